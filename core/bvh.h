@@ -1,0 +1,49 @@
+// An 8-wide bounding volume hierarchy over boxes; what is in the boxes is the caller's business.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/types.h"
+
+namespace lanewise {
+
+constexpr uint32_t kNoPrim = 0xFFFFFFFFu;
+constexpr uint32_t kBvhWidth = 8;   // children of a node
+constexpr uint32_t kLeafWidth = 4;  // primitives of a leaf block, tested together
+
+struct Box {
+  float lo[3];
+  float hi[3];
+};
+
+// One node: the boxes of its children in SoA, and where they are. Unused children have lo = +inf, hi = -inf, so no ray
+// enters them. 224 bytes of bounds and children on 64-byte lines.
+struct alignas(64) BvhNode {
+  float lo[3][kBvhWidth];
+  float hi[3][kBvhWidth];
+  uint32_t child[kBvhWidth];  // a node's index, or kLeafBit | first block << 3 | (blocks - 1)
+};
+
+constexpr uint32_t kLeafBit = 0x80000000u;
+constexpr uint32_t leaf_first_block(uint32_t child) { return (child & ~kLeafBit) >> 3; }
+constexpr uint32_t leaf_blocks(uint32_t child) { return (child & 7) + 1; }
+
+struct Bvh {
+  AlignedVector<BvhNode> nodes;  // nodes[0] is the root; empty for no primitives
+  std::vector<uint32_t>
+      leaf_prims;      // kLeafWidth per block: indices into the boxes given, kNoPrim where a block is short
+  Box bounds{};        // of everything
+  uint32_t depth = 0;  // inner nodes on the longest way down; at most kMaxBvhDepth
+};
+
+// What a traversal's stack must hold: 7 siblings a level.
+constexpr uint32_t kMaxBvhDepth = 32;
+constexpr uint32_t kBvhStackSize = 7 * kMaxBvhDepth + 8;
+
+// Builds by binned SAH (Wald 2007) over centroids, then collapses the binary tree to 8 wide (Wald, Benthin & Boulos
+// 2008). The boxes must be finite with lo <= hi. Deterministic: a function of the boxes alone.
+Bvh build_bvh(std::span<const Box> boxes);
+
+}  // namespace lanewise

@@ -1,0 +1,22 @@
+// A picture in memory: linear RGB radiance, float, rows from the top.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lanewise {
+
+struct Image {
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<float> rgb;  // 3 * width * height, interleaved
+
+  Image() = default;
+  Image(uint32_t w, uint32_t h) : width(w), height(h), rgb(size_t{3} * w * h, 0.0f) {}
+  const float* pixel(uint32_t x, uint32_t y) const { return &rgb[3 * (size_t{y} * width + x)]; }
+  float* pixel(uint32_t x, uint32_t y) { return &rgb[3 * (size_t{y} * width + x)]; }
+};
+
+}  // namespace lanewise

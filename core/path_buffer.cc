@@ -1,0 +1,51 @@
+#include "core/path_buffer.h"
+
+namespace lanewise {
+namespace {
+
+// Odd numbers of cache lines between arrays, so that the same slot of many fields does not fall into the same cache
+// set.
+constexpr uint32_t kStagger = 3 * kLanes;
+
+constexpr int count_fields() {
+  int n = 0;
+#define LANEWISE_COUNT(type, name, meaning) ++n;
+  LANEWISE_PATH_FIELDS(LANEWISE_COUNT, LANEWISE_COUNT)
+#undef LANEWISE_COUNT
+  return n;
+}
+
+}  // namespace
+
+Path<float> PathBuffer::dummy_path(uint32_t capacity) {
+  Path<float> p;
+  p.slot = capacity;
+  p.d_z = 1;
+  p.t = 1;
+  p.bin = kFinished;
+  p.n_z = p.s_z = 1;
+  p.l_z = 1;
+  return p;
+}
+
+PathBuffer::PathBuffer(uint32_t capacity)
+    : capacity_(round_up_to_lanes(capacity)), padded_(capacity_ + 2 * kLanes * kBinCount) {
+  const uint32_t stride = padded_ + kStagger;
+  constexpr uint32_t kResults = 3;
+  memory_.assign(size_t{stride} * (count_fields() + kResults), 0.0f);
+  float* next = memory_.data();
+#define LANEWISE_PLACE(type, name, meaning)    \
+  state_.name = reinterpret_cast<type*>(next); \
+  next += stride;
+  LANEWISE_PATH_FIELDS(LANEWISE_PLACE, LANEWISE_PLACE)
+#undef LANEWISE_PLACE
+  for (float** result : {&state_.result_r, &state_.result_g, &state_.result_b}) {
+    *result = next;
+    next += stride;
+  }
+  state_.capacity = capacity_;
+  const Path<float> dummy = dummy_path(capacity_);
+  for (uint32_t i = 0; i < padded_; ++i) store_path(state_, i, dummy);
+}
+
+}  // namespace lanewise

@@ -1,0 +1,122 @@
+// THE field list: everything a path carries, once. From it come the SoA pointers, their allocation, the AoS Path<T> of
+// the scalar twins, the move in the sort, and the fill, comparison and dump in tests. Adding a field is adding a line.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "core/types.h"
+
+namespace lanewise {
+
+// KEPT fields live across the sort and are moved by it; LOCAL fields live only between two sorts, or (bin) end in one.
+// All are 4 bytes wide. Lengths are in scene units relative to the plan's centre; directions are unit vectors unless
+// said otherwise; radiance and throughput are linear RGB. "Surface" below is the hit after the kernel `surface` has
+// run.
+//
+//   KEPT(type, name, meaning)
+#define LANEWISE_PATH_FIELDS(KEPT, LOCAL)                                                                \
+  KEPT(uint32_t, pixel, "y * width + x, row 0 at the top")                                               \
+  KEPT(uint32_t, sample, "index of the sample within its pixel")                                         \
+  KEPT(uint32_t, slot, "the path's place in the wave at generate; where retire puts its radiance")       \
+  KEPT(float, o_x, "ray origin, offset off the surface it leaves; surface: the hit point itself")        \
+  KEPT(float, o_y, "")                                                                                   \
+  KEPT(float, o_z, "")                                                                                   \
+  KEPT(float, d_x, "unit direction of travel, away from the camera; wo = -d at the surface")             \
+  KEPT(float, d_y, "")                                                                                   \
+  KEPT(float, d_z, "")                                                                                   \
+  KEPT(float, beta_r, "throughput: product of f cos / pdf so far; 0 ends the path")                      \
+  KEPT(float, beta_g, "")                                                                                \
+  KEPT(float, beta_b, "")                                                                                \
+  KEPT(float, L_r, "radiance gathered so far")                                                           \
+  KEPT(float, L_g, "")                                                                                   \
+  KEPT(float, L_b, "")                                                                                   \
+  KEPT(float, pdf, "density of d per steradian at the last scattering; 0: camera or delta lobe")         \
+  KEPT(uint32_t, prim, "primitive hit, or kNoPrim")                                                      \
+  KEPT(float, t, "distance to the hit, +inf for none")                                                   \
+  KEPT(float, u, "barycentric weight of a triangle's second vertex at the hit (0 for spheres)")          \
+  KEPT(float, v, "barycentric weight of its third vertex")                                               \
+  LOCAL(uint32_t, bin, "Bin of the hit, written by intersect, read by the sort")                         \
+  LOCAL(float, n_x, "unit geometric normal as the surface's winding gives it, not turned to the viewer") \
+  LOCAL(float, n_y, "")                                                                                  \
+  LOCAL(float, n_z, "")                                                                                  \
+  LOCAL(float, s_x, "unit shading normal, on the side of n's winding")                                   \
+  LOCAL(float, s_y, "")                                                                                  \
+  LOCAL(float, s_z, "")                                                                                  \
+  LOCAL(float, err, "distance along n that puts a ray origin safely off the surface")                    \
+  LOCAL(float, l_x, "shadow ray: from the offset hit point to the offset light point, not normalised")   \
+  LOCAL(float, l_y, "")                                                                                  \
+  LOCAL(float, l_z, "")                                                                                  \
+  LOCAL(float, l_pdf, "density of the light sample's direction per steradian; 0: no usable sample")      \
+  LOCAL(float, c_r, "radiance that the light sample adds to L if it is seen")                            \
+  LOCAL(float, c_g, "")                                                                                  \
+  LOCAL(float, c_b, "")
+
+// What all paths of a wave share at one moment.
+struct Step {
+  uint32_t bounce = 0;        // scattering events behind every live path
+  uint32_t light = 0;         // the light that sample_light samples
+  uint32_t light_sample = 0;  // which of the plan's samples of that light
+};
+
+// The samples that a wave computes: its path i is sample first_sample + j % samples of pixel pixels[j / samples], with
+// j = first_path + i. A pixel's samples are thus consecutive, whatever the wave's size.
+struct Batch {
+  const uint32_t* pixels = nullptr;
+  uint32_t samples = 0;       // per pixel, > 0
+  uint32_t first_sample = 0;  // first_sample + samples fits in 32 bits
+  uint64_t first_path = 0;
+  uint32_t paths = 0;  // at most the wave's size
+};
+
+// SoA view of a wave's paths: one 64-byte aligned array a field, of capacity + 2 * kLanes * kBinCount elements at
+// least. Padding slots hold the dummy path: throughput 0, finite values everywhere, unit directions, prim 0, and a slot
+// of its own (the capacity) to retire to, so that kernels compute on it without harm or mask.
+struct PathState {
+#define LANEWISE_POINTER(type, name, meaning) type* name = nullptr;
+  LANEWISE_PATH_FIELDS(LANEWISE_POINTER, LANEWISE_POINTER)
+#undef LANEWISE_POINTER
+
+  uint32_t capacity = 0;  // the wave's size; also the slot of padding
+  Step step;
+  Batch batch;
+
+  // Radiance of retired paths by slot, capacity + kLanes elements each.
+  float* result_r = nullptr;
+  float* result_g = nullptr;
+  float* result_b = nullptr;
+};
+
+// A field's type in Path<T>: floats become T, integers stay.
+template <class T, class Field>
+using PathField = std::conditional_t<std::is_same_v<Field, float>, T, Field>;
+
+// The AoS form, for the scalar twins: T is float (what the SIMD kernels must reproduce) or double (the oracle).
+template <class T>
+struct Path {
+#define LANEWISE_MEMBER(type, name, meaning) PathField<T, type> name{};
+  LANEWISE_PATH_FIELDS(LANEWISE_MEMBER, LANEWISE_MEMBER)
+#undef LANEWISE_MEMBER
+
+  Step step;
+};
+
+// Path<T> from and to slot i of the arrays.
+template <class T>
+Path<T> load_path(const PathState& s, uint32_t i) {
+  Path<T> p;
+#define LANEWISE_LOAD(type, name, meaning) p.name = static_cast<decltype(p.name)>(s.name[i]);
+  LANEWISE_PATH_FIELDS(LANEWISE_LOAD, LANEWISE_LOAD)
+#undef LANEWISE_LOAD
+  p.step = s.step;
+  return p;
+}
+
+template <class T>
+void store_path(const PathState& s, uint32_t i, const Path<T>& p) {
+#define LANEWISE_STORE(type, name, meaning) s.name[i] = static_cast<type>(p.name);
+  LANEWISE_PATH_FIELDS(LANEWISE_STORE, LANEWISE_STORE)
+#undef LANEWISE_STORE
+}
+
+}  // namespace lanewise

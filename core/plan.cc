@@ -1,0 +1,285 @@
+#include "core/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
+
+#include "core/plan_lights.h"
+#include "core/ray_offset.h"
+#include "core/scene.h"
+
+namespace lanewise {
+namespace {
+
+using glm::dvec3;
+
+// Corner normals this close to the face's own change no pixel; a mesh made of such is flat.
+constexpr double kFlatCosine = 1 - 1e-10;
+
+void copy(const dvec3& from, float* to) {
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
+}
+
+Bin bin_of(Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kDiffuse:
+      return kDiffuse;
+    case Material::Kind::kMicrofacet:
+      return kMicrofacet;
+    case Material::Kind::kMirror:
+      return kMirror;
+    case Material::Kind::kGlass:
+      return kGlass;
+    case Material::Kind::kEmission:
+      return kEmitter;
+  }
+  return kDiffuse;
+}
+
+PlanMaterial compile(const Material& m) {
+  PlanMaterial out{};
+  copy(m.reflectance, out.reflectance);
+  copy(m.transmittance, out.transmittance);
+  out.ior = static_cast<float>(m.ior);
+  out.alpha = static_cast<float>(m.alpha);
+  copy(m.eta, out.eta);
+  copy(m.k, out.k);
+  return out;
+}
+
+class Planner {
+ public:
+  Planner(const Scene& scene, const Settings& settings) : scene_(scene), box_(bounds(scene)) {
+    plan_.settings = settings;
+    for (int k = 0; k < 3; ++k) plan_.center[k] = box_.center()[k];
+  }
+
+  Plan run() {
+    place_camera();
+    for (const Material& m : scene_.materials) plan_.materials.push_back(compile(m));
+    choose_flat_meshes();
+    add_triangles();
+    add_spheres();
+    build_trees();
+    choose_stages();
+    return std::move(plan_);
+  }
+
+ private:
+  dvec3 relative(const dvec3& p) const { return p - box_.center(); }
+
+  void say(std::string reason) { plan_.reasons.push_back(std::move(reason)); }
+
+  // The file's camera, or the course program's framing: 1.5 diagonals back from the centre along the camera's axis,
+  // with a focal length of 600 / (2 tan(vfov / 2)) pixels whatever the resolution.
+  void place_camera() {
+    const Settings& settings = plan_.settings;
+    const Camera& camera = scene_.cameras.front();
+    const double width = settings.width, height = settings.height;
+    // The field of view grows with the picture's shape to hold all of the camera's own view.
+    double tan_x = std::tan(camera.xfov / 2), tan_y = tan_x / camera.aspect;
+    if (tan_x / tan_y < width / height) {
+      tan_x = tan_y * width / height;
+    } else {
+      tan_y = tan_x / (width / height);
+    }
+    const dvec3 right = glm::normalize(dvec3(camera.to_world[0]));
+    const dvec3 back = glm::normalize(dvec3(camera.to_world[2]));
+    PlanCamera& out = plan_.camera;
+    if (settings.view == View::kFile) {
+      copy(relative(dvec3(camera.to_world[3])), out.eye);
+      copy(right, out.right);
+      copy(glm::normalize(glm::cross(back, right)), out.up);
+      out.pixel = static_cast<float>(2 * tan_y / height);
+    } else {
+      copy(back * (1.5 * box_.diagonal()), out.eye);
+      const dvec3 world_up(0, 0, 1);
+      const dvec3 side = std::abs(back.z) < 0.999 ? glm::normalize(glm::cross(world_up, back)) : right;
+      copy(side, out.right);
+      copy(glm::cross(back, side), out.up);
+      out.pixel = static_cast<float>(2 * tan_y / 600);
+    }
+    copy(-back, out.forward);
+  }
+
+  // The smallest meshes first, as long as the flat list stays short.
+  void choose_flat_meshes() {
+    std::vector<size_t> by_size(scene_.meshes.size());
+    for (size_t i = 0; i < by_size.size(); ++i) by_size[i] = i;
+    std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) {
+      return scene_.meshes[a].triangles.size() < scene_.meshes[b].triangles.size();
+    });
+    is_flat_mesh_.assign(scene_.meshes.size(), false);
+    size_t flat = 0;
+    for (const size_t i : by_size) {
+      const size_t n = scene_.meshes[i].triangles.size();
+      if (n > kMaxFlatMesh || flat + n > kMaxFlatTriangles) break;
+      is_flat_mesh_[i] = true;
+      flat += n;
+    }
+  }
+
+  void add_triangles() {
+    if (scene_.triangle_count() + scene_.spheres.size() >= size_t{1} << 29) {
+      throw Error(scene_.path + ": more than 2^29 primitives");
+    }
+    bool any_smooth = false;
+    for (size_t m = 0; m < scene_.meshes.size(); ++m) {
+      const Mesh& mesh = scene_.meshes[m];
+      const uint32_t first = plan_.triangles;
+      for (size_t t = 0; t < mesh.triangles.size(); ++t) any_smooth |= add_triangle(mesh, t, is_flat_mesh_[m]);
+      if (scene_.materials[mesh.material].kind == Material::Kind::kEmission) {
+        add_mesh_light(plan_, std::span(corners_).subspan(first), scene_.materials[mesh.material].radiance);
+        std::fill(plan_.prim_light.begin() + first, plan_.prim_light.end(),
+                  static_cast<uint32_t>(plan_.lights.size() - 1));
+      }
+    }
+    if (!any_smooth) plan_.prim_normals.clear();
+    if (plan_.triangles > 0) {
+      say(any_smooth ? "shading normals: interpolated" : "shading normals: every face is flat, none stored");
+    }
+  }
+
+  // Returns whether its shading normals differ from its face's.
+  bool add_triangle(const Mesh& mesh, size_t index, bool flat) {
+    FlatTriangle corners{};
+    dvec3 v[3];
+    for (int k = 0; k < 3; ++k) {
+      copy(relative(mesh.positions[mesh.triangles[index][static_cast<size_t>(k)]]), corners.v[k]);
+      v[k] = dvec3(corners.v[k][0], corners.v[k][1], corners.v[k][2]);
+    }
+    const dvec3 n = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
+    corners.prim = plan_.triangles++;
+    corners_.push_back(corners);
+    (flat ? plan_.flat_triangles : tree_triangles_).push_back(corners);
+    add_primitive(n, glm::dot(n, (v[0] + v[1] + v[2]) / 3.0), triangle_offset(corners.v), mesh.material);
+
+    bool smooth = false;
+    for (size_t k = 0; k < 3; ++k) {
+      const dvec3 corner_normal = mesh.normals.empty() ? n : mesh.normals[index][k];
+      smooth |= std::abs(glm::dot(corner_normal, n)) < kFlatCosine;
+      for (int axis = 0; axis < 3; ++axis) plan_.prim_normals.push_back(static_cast<float>(corner_normal[axis]));
+    }
+    return smooth;
+  }
+
+  void add_spheres() {
+    for (const Sphere& sphere : scene_.spheres) {
+      FlatSphere out{};
+      copy(relative(sphere.center), out.center);
+      out.radius = static_cast<float>(sphere.radius);
+      out.prim = plan_.triangles + plan_.spheres++;
+      spheres_.push_back(out);
+      add_primitive(relative(sphere.center), sphere.radius, sphere_offset(out.center, out.radius), sphere.material);
+      if (scene_.materials[sphere.material].kind == Material::Kind::kEmission) {
+        add_sphere_light(plan_, out, scene_.materials[sphere.material].radiance);
+        plan_.prim_light.back() = static_cast<uint32_t>(plan_.lights.size() - 1);
+      }
+    }
+  }
+
+  void add_primitive(const dvec3& shape, double w, float err, uint32_t material) {
+    for (int axis = 0; axis < 3; ++axis) plan_.prim_shape.push_back(static_cast<float>(shape[axis]));
+    plan_.prim_shape.push_back(static_cast<float>(w));
+    plan_.prim_err.push_back(err);
+    plan_.prim_material.push_back(material);
+    const Bin bin = bin_of(scene_.materials[material].kind);
+    plan_.prim_bin.push_back(bin);
+    plan_.prim_light.push_back(0);
+    has_bin_[bin] = true;
+  }
+
+  void build_trees() {
+    std::vector<Box> boxes;
+    for (const FlatTriangle& t : tree_triangles_) {
+      Box box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lo[axis] = std::min({t.v[0][axis], t.v[1][axis], t.v[2][axis]});
+        box.hi[axis] = std::max({t.v[0][axis], t.v[1][axis], t.v[2][axis]});
+      }
+      boxes.push_back(box);
+    }
+    plan_.triangle_tree = build_bvh(boxes);
+    const std::vector<uint32_t>& order = plan_.triangle_tree.leaf_prims;
+    plan_.triangle_blocks.assign(order.size() / kLeafWidth, TriangleBlock{});
+    for (size_t i = 0; i < order.size(); ++i) {
+      TriangleBlock& block = plan_.triangle_blocks[i / kLeafWidth];
+      const size_t lane = i % kLeafWidth;
+      block.prim[lane] = kNoPrim;
+      if (order[i] == kNoPrim) continue;
+      const FlatTriangle& t = tree_triangles_[order[i]];
+      block.prim[lane] = t.prim;
+      for (int corner = 0; corner < 3; ++corner) {
+        for (int axis = 0; axis < 3; ++axis) block.v[corner][axis][lane] = t.v[corner][axis];
+      }
+    }
+    say(std::to_string(plan_.flat_triangles.size()) + " triangles in a flat list, tested by whole vectors of rays; " +
+        std::to_string(tree_triangles_.size()) + " in an 8-wide tree");
+    build_sphere_tree();
+  }
+
+  void build_sphere_tree() {
+    if (spheres_.size() <= kMaxFlatSpheres) {
+      plan_.flat_spheres = spheres_;
+      say(std::to_string(spheres_.size()) + " spheres in a flat list");
+      return;
+    }
+    std::vector<Box> boxes;
+    for (const FlatSphere& s : spheres_) {
+      Box box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lo[axis] = std::nextafter(s.center[axis] - s.radius, -INFINITY);
+        box.hi[axis] = std::nextafter(s.center[axis] + s.radius, INFINITY);
+      }
+      boxes.push_back(box);
+    }
+    plan_.sphere_tree = build_bvh(boxes);
+    const std::vector<uint32_t>& order = plan_.sphere_tree.leaf_prims;
+    plan_.sphere_blocks.assign(order.size() / kLeafWidth, SphereBlock{});
+    for (size_t i = 0; i < order.size(); ++i) {
+      SphereBlock& block = plan_.sphere_blocks[i / kLeafWidth];
+      const size_t lane = i % kLeafWidth;
+      block.prim[lane] = kNoPrim;
+      if (order[i] == kNoPrim) continue;
+      const FlatSphere& s = spheres_[order[i]];
+      block.prim[lane] = s.prim;
+      block.radius[lane] = s.radius;
+      for (int axis = 0; axis < 3; ++axis) block.center[axis][lane] = s.center[axis];
+    }
+    say(std::to_string(spheres_.size()) + " spheres in an 8-wide tree");
+  }
+
+  void choose_stages() {
+    constexpr ShadeStages kAll[] = {
+        {kDiffuse, Stage::kLightDiffuse, Stage::kShadeDiffuse},
+        {kMicrofacet, Stage::kLightMicrofacet, Stage::kShadeMicrofacet},
+        {kMirror, Stage::kCount, Stage::kShadeMirror},
+        {kGlass, Stage::kCount, Stage::kShadeGlass},
+    };
+    std::string names;
+    for (const ShadeStages& stages : kAll) {
+      if (!has_bin_[stages.bin]) continue;
+      plan_.shade_stages.push_back(stages);
+      names += std::string(names.empty() ? "" : ", ") + kStageNames[static_cast<int>(stages.shade)];
+    }
+    say("materials: " + (names.empty() ? "none scatters" : names));
+    say(std::to_string(plan_.lights.size()) + (plan_.lights.size() == 1 ? " light" : " lights") +
+        ", each sampled at every vertex");
+  }
+
+  const Scene& scene_;
+  Bounds box_;
+  Plan plan_;
+  std::vector<bool> is_flat_mesh_;
+  std::vector<FlatTriangle> corners_;  // of all triangles, by prim
+  std::vector<FlatTriangle> tree_triangles_;
+  std::vector<FlatSphere> spheres_;
+  bool has_bin_[kBinCount] = {};
+};
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const Settings& settings) { return Planner(scene, settings).run(); }
+
+}  // namespace lanewise

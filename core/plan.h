@@ -1,0 +1,155 @@
+// The plan: a scene compiled, once, to the flat, padded, immutable arrays that kernels read, and to the list of stages
+// that this scene needs. Kernels see nothing else of the scene. Every index is valid; arrays that vectors gather from
+// are padded.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/bvh.h"
+#include "core/settings.h"
+#include "core/stages.h"
+#include "core/types.h"
+
+namespace lanewise {
+
+struct Scene;
+
+// What a ray met, as the sort needs it: one bin per shading stage, the materials that take light samples first.
+enum Bin : uint32_t { kDiffuse, kMicrofacet, kMirror, kGlass, kEmitter, kFinished, kBinCount };
+constexpr uint32_t kRoughBins = kMirror;     // bins below this one take light samples
+constexpr uint32_t kSurfaceBins = kEmitter;  // bins below this one scatter; kFinished: missed, absorbed or roulette's
+
+// One cache line a material, gathered by index.
+struct alignas(64) PlanMaterial {
+  float reflectance[3];
+  float transmittance[3];
+  float ior;
+  float alpha;
+  float eta[3];
+  float k[3];
+  float pad[2];
+};
+
+// Where gathers find a member: float number `member` of the material.
+enum MaterialMember : int32_t {
+  kReflectance = 0,
+  kTransmittance = 3,
+  kIor = 6,
+  kAlpha = 7,
+  kEta = 8,
+  kK = 11,
+  kMaterialStride = 16
+};
+
+// A parallelogram corner + u e1 + v e2 with u, v in [0, 1], or its half with u + v <= 1.
+struct alignas(64) LightPatch {
+  float corner[3];
+  float cdf;  // area of the light's patches up to and with this one, over the light's area
+  float e1[3];
+  float is_triangle;  // 1 or 0
+  float e2[3];
+  float pad0;
+  float n[3];  // unit normal of the side that emits
+  float pad1;
+};
+enum LightPatchMember : int32_t {
+  kCorner = 0,
+  kCdf = 3,
+  kE1 = 4,
+  kIsTriangle = 7,
+  kE2 = 8,
+  kPatchNormal = 12,
+  kLightPatchStride = 16
+};
+
+// One emissive mesh (its patches are sampled by area) or one emissive sphere.
+struct PlanLight {
+  float radiance[3];
+  float area;
+  float err;  // distance along the normal that puts a shadow ray's end safely off the light
+  uint32_t first_patch = 0;
+  uint32_t patches = 0;  // 0: a sphere
+  float center[3] = {0, 0, 0};
+  float radius = 0;
+};
+
+// A triangle or sphere outside the trees, tested by whole vectors of rays.
+struct FlatTriangle {
+  float v[3][3];  // vertex, axis
+  uint32_t prim;
+};
+struct FlatSphere {
+  float center[3];
+  float radius;
+  uint32_t prim;
+};
+
+// kLeafWidth triangles or spheres side by side, tested by one ray. Short blocks hold prim kNoPrim and zeros.
+struct alignas(16) TriangleBlock {
+  float v[3][3][kLeafWidth];  // vertex, axis, lane
+  uint32_t prim[kLeafWidth];
+};
+struct alignas(16) SphereBlock {
+  float center[3][kLeafWidth];
+  float radius[kLeafWidth];
+  uint32_t prim[kLeafWidth];
+};
+
+// Large meshes go into a tree; a few large triangles are cheaper tested all.
+constexpr uint32_t kMaxFlatTriangles = 32;
+constexpr uint32_t kMaxFlatMesh = 16;  // triangles of a mesh that may go into the flat list
+constexpr uint32_t kMaxFlatSpheres = 16;
+
+struct PlanCamera {
+  float eye[3];      // relative to the plan's centre
+  float forward[3];  // orthonormal
+  float right[3];
+  float up[3];
+  float pixel;  // a pixel's side at distance 1 (square pixels): 1 / focal length in pixels
+};
+
+// A material's part in a bounce: `light` weighs the light sample at every vertex, `shade` scatters the path.
+struct ShadeStages {
+  Bin bin;
+  Stage light;  // Stage::kCount for delta materials, which take no light samples
+  Stage shade;
+};
+
+struct Plan {
+  Settings settings;
+  double center[3] = {0, 0, 0};  // scene position = plan position + center
+  PlanCamera camera;
+
+  // Primitives 0 .. triangles - 1 are triangles, then come the spheres.
+  uint32_t triangles = 0;
+  uint32_t spheres = 0;
+  AlignedVector<float>
+      prim_shape;                 // 4 a primitive: triangle: unit normal n and n.p of its plane; sphere: center, radius
+  AlignedVector<float> prim_err;  // distance that keeps a ray's origin safely off it: see ray_offset.h
+  AlignedVector<float> prim_normals;      // 9 a triangle: unit shading normals of its corners; empty: all are flat
+  AlignedVector<uint32_t> prim_material;  // index into materials
+  AlignedVector<uint32_t> prim_bin;       // Bin
+  AlignedVector<uint32_t> prim_light;     // index into lights; 0 for what is no emitter
+  AlignedVector<PlanMaterial> materials;
+  AlignedVector<LightPatch> light_patches;
+  std::vector<PlanLight> lights;
+  AlignedVector<float> light_table;  // 4 a light, to gather by light: radiance, area
+
+  // Where rays look for them: every primitive is in exactly one of these four.
+  std::vector<FlatTriangle> flat_triangles;
+  std::vector<FlatSphere> flat_spheres;
+  Bvh triangle_tree;
+  AlignedVector<TriangleBlock> triangle_blocks;
+  Bvh sphere_tree;
+  AlignedVector<SphereBlock> sphere_blocks;
+
+  std::vector<ShadeStages> shade_stages;  // only those that the scene needs, in bin order
+  std::vector<std::string> reasons;       // what was chosen and why, a line each
+};
+
+// Compiles the scene for these settings. Throws Error for what a plan cannot hold (more than 2^31 primitives).
+Plan make_plan(const Scene& scene, const Settings& settings);
+
+}  // namespace lanewise

@@ -1,0 +1,144 @@
+// The scalar path tracer: one path at a time through the twins, no waves, no sort, no vectors. Obviously correct rather
+// than fast; in float it is what the SIMD renderer must reproduce, in double the oracle of its accuracy.
+#include <chrono>
+#include <cmath>
+
+#include "core/film.h"
+#include "core/render.h"
+#include "core/stats.h"
+#include "core/workers.h"
+#include "kernels/reference/emission.h"
+#include "kernels/reference/gather_emission.h"
+#include "kernels/reference/generate.h"
+#include "kernels/reference/intersect.h"
+#include "kernels/reference/occlude.h"
+#include "kernels/reference/roulette.h"
+#include "kernels/reference/sample_hemisphere.h"
+#include "kernels/reference/sample_light.h"
+#include "kernels/reference/shade_diffuse.h"
+#include "kernels/reference/shade_glass.h"
+#include "kernels/reference/shade_microfacet.h"
+#include "kernels/reference/shade_mirror.h"
+#include "kernels/reference/surface.h"
+
+namespace lanewise {
+namespace {
+
+template <class T>
+void weigh_light(const Plan& plan, Path<T>& p) {
+  if (p.bin == kDiffuse) reference::light_diffuse(plan, p);
+  if (p.bin == kMicrofacet) reference::light_microfacet(plan, p);
+}
+
+template <class T>
+void shade(const Plan& plan, Path<T>& p) {
+  switch (p.bin) {
+    case kDiffuse:
+      return reference::shade_diffuse(plan, p);
+    case kMicrofacet:
+      return reference::shade_microfacet(plan, p);
+    case kMirror:
+      return reference::shade_mirror(plan, p);
+    case kGlass:
+      return reference::shade_glass(plan, p);
+  }
+}
+
+template <class T>
+void add_direct_light(const Plan& plan, Path<T>& p, Profile& profile) {
+  const Settings& settings = plan.settings;
+  if (p.bin >= kRoughBins || settings.direct == Direct::kBsdf) return;
+  const bool hemisphere = settings.direct == Direct::kHemisphere;
+  const uint32_t lights = hemisphere ? 1 : static_cast<uint32_t>(plan.lights.size());
+  for (p.step.light = 0; p.step.light < lights; ++p.step.light) {
+    for (p.step.light_sample = 0; p.step.light_sample < settings.light_samples; ++p.step.light_sample) {
+      hemisphere ? reference::sample_hemisphere(plan, p) : reference::sample_light(plan, p);
+      weigh_light(plan, p);
+      if (p.c_r == 0 && p.c_g == 0 && p.c_b == 0) continue;
+      ++profile.shadow_rays;
+      hemisphere ? reference::gather_emission(plan, p) : reference::occlude(plan, p);
+    }
+  }
+}
+
+// Follows the path of (p.pixel, p.sample) to its end; its radiance is left in L.
+template <class T>
+void trace(const Plan& plan, Path<T>& p, Profile& profile) {
+  reference::generate(plan, p);
+  ++profile.samples;
+  for (uint32_t bounce = 0;; ++bounce) {
+    p.step = {.bounce = bounce};
+    if (bounce > 0) ++profile.bounce_rays;
+    reference::intersect(plan, p);
+    if (p.bin == kEmitter) reference::emission(plan, p);
+    if (p.bin >= kSurfaceBins || bounce == plan.settings.max_depth) return profile.count_paths(bounce, 1);
+    reference::surface(plan, p);
+    add_direct_light(plan, p, profile);
+    shade(plan, p);
+    reference::roulette(plan, p);
+    if (p.beta_r == 0 && p.beta_g == 0 && p.beta_b == 0) return profile.count_paths(bounce + 1, 1);
+  }
+}
+
+// NaN, infinite and negative samples count as black, as in accumulate.
+template <class T>
+bool is_valid(const Path<T>& p) {
+  const auto valid = [](T x) { return x >= 0 && std::isfinite(x); };
+  return valid(p.L_r) && valid(p.L_g) && valid(p.L_b);
+}
+
+template <class T>
+void sample_pixel(const Plan& plan, uint32_t pixel, Film& film, Profile& profile) {
+  const Settings& settings = plan.settings;
+  PixelSums& sums = film.sums[pixel];
+  const uint32_t batch = settings.adaptive_batch > 0 ? settings.adaptive_batch : settings.spp;
+  for (uint32_t& n = film.samples[pixel]; n < settings.spp;) {
+    Path<T> p;
+    p.pixel = pixel;
+    p.sample = n++;
+    trace(plan, p, profile);
+    if (is_valid(p)) {
+      const double y = luminance(p.L_r, p.L_g, p.L_b);
+      sums.r += p.L_r;
+      sums.g += p.L_g;
+      sums.b += p.L_b;
+      sums.y2 += y * y;
+    } else {
+      ++profile.invalid_samples;
+    }
+    if (n % batch == 0 && n < settings.spp && has_converged(sums, n, settings.adaptive_tolerance)) break;
+  }
+}
+
+}  // namespace
+
+template <class T>
+RenderResult render_reference(const Plan& plan, const std::function<void(const Progress&)>& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const Settings& settings = plan.settings;
+  const uint32_t threads = thread_count(settings, settings.height);
+  Film film(size_t{settings.width} * settings.height);
+  std::vector<Profile> profiles(threads);
+  run_workers(
+      threads, settings.height,
+      [&](size_t row, uint32_t worker) {
+        const uint64_t before = profiles[worker].rays();
+        for (uint32_t x = 0; x < settings.width; ++x) {
+          sample_pixel<T>(plan, static_cast<uint32_t>(row) * settings.width + x, film, profiles[worker]);
+        }
+        return profiles[worker].rays() - before;
+      },
+      progress);
+
+  Profile profile;
+  for (const Profile& p : profiles) profile.add(p);
+  RenderResult result{develop(film, settings.width, settings.height), std::move(film.samples), make_stats(profile)};
+  result.stats.threads = threads;
+  result.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+template RenderResult render_reference<float>(const Plan&, const std::function<void(const Progress&)>&);
+template RenderResult render_reference<double>(const Plan&, const std::function<void(const Progress&)>&);
+
+}  // namespace lanewise

@@ -1,0 +1,63 @@
+// From a plan to a picture: tiles over threads, progress, statistics.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/plan.h"
+#include "core/settings.h"
+
+namespace lanewise {
+
+// One stage's work over a render, summed over threads.
+struct StageStats {
+  std::string name;
+  uint64_t calls = 0;
+  uint64_t paths = 0;     // paths handed to the stage, without padding
+  double seconds = 0;     // of thread time
+  double lanes_live = 0;  // share of the vector lanes that it ran which held a living path
+};
+
+struct RenderStats {
+  uint64_t samples = 0;
+  uint64_t camera_rays = 0;
+  uint64_t bounce_rays = 0;
+  uint64_t shadow_rays = 0;
+  uint64_t invalid_samples = 0;           // NaN, Inf or negative radiance: counted as 0 in the picture
+  std::vector<uint64_t> paths_by_length;  // [k]: paths of k scattering events; sums to samples
+  std::vector<StageStats> stages;
+  double seconds = 0;  // wall clock of rendering alone
+  uint32_t threads = 0;
+};
+
+struct Progress {
+  double fraction = 0;  // of the work that is known of, in [0, 1]
+  uint64_t rays = 0;
+  double seconds = 0;
+};
+
+struct RenderResult {
+  Image image;
+  std::vector<uint32_t> samples;  // per pixel
+  RenderStats stats;
+};
+
+// Renders plan.settings. progress, if given, is called from this thread some ten times a second. The pixels depend on
+// the plan's scene, settings and seed alone: not on threads, wave or tile order.
+RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress = nullptr);
+
+// The same picture by the scalar path tracer made of the twins: T is float or double.
+template <class T>
+RenderResult render_reference(const Plan& plan, const std::function<void(const Progress&)>& progress = nullptr);
+
+// Instruction sets: "scalar", "sse4", "avx2", "avx512"; those compiled in that this machine can run, best last.
+std::vector<std::string> supported_isas();
+// Chooses one for all kernels from now on; "" means the best. Throws UsageError for a name that is unknown or not
+// supported here. Process-wide: call before threads start.
+void choose_isa(const std::string& name);
+std::string chosen_isa();
+
+}  // namespace lanewise

@@ -1,0 +1,87 @@
+// What a loader makes of a file: authoring data in double precision and world space. The plan is compiled from it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace lanewise {
+
+// Linear RGB values; unused members keep their defaults.
+struct Material {
+  enum class Kind { kDiffuse, kMirror, kGlass, kMicrofacet, kEmission };
+
+  std::string name;
+  Kind kind = Kind::kDiffuse;
+  glm::dvec3 reflectance{0.0};    // diffuse albedo; mirror and glass: tint of reflection; each in [0, 1]
+  glm::dvec3 transmittance{1.0};  // glass: tint of refraction, in [0, 1]
+  double ior = 1.5;               // glass: index inside over index outside, > 0
+  double alpha = 0.1;             // microfacet: Beckmann roughness, RMS slope times sqrt(2), in (0, 1] or above
+  glm::dvec3 eta{1.0};            // microfacet: real index at 614, 549, 466 nm
+  glm::dvec3 k{0.0};              // microfacet: extinction coefficient
+  glm::dvec3 radiance{0.0};       // emission: W / (m^2 sr), from the front (the side that sees the winding turn left)
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<glm::dvec3> positions;               // world space
+  std::vector<std::array<uint32_t, 3>> triangles;  // indices into positions, counter-clockwise seen from the front
+  std::vector<std::array<glm::dvec3, 3>>
+      normals;  // the file's unit normals at each triangle's corners; empty: it has none
+  uint32_t material = 0;
+};
+
+struct Sphere {
+  std::string name;
+  glm::dvec3 center{0.0};
+  double radius = 1.0;  // > 0
+  uint32_t material = 0;
+};
+
+// A perspective camera at the origin of its own frame, looking along -z with y up.
+struct Camera {
+  std::string name;
+  glm::dmat4 to_world{1.0};
+  double xfov = 0.8;          // full horizontal field of view in radians, in (0, pi)
+  double aspect = 4.0 / 3.0;  // width / height of the view that xfov describes
+};
+
+struct Scene {
+  std::string path;  // where it was read from, for messages
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Sphere> spheres;
+  std::vector<Camera> cameras;
+  std::vector<std::string> notices;  // what the loader decided and a user may want to know, a line each
+
+  size_t triangle_count() const;
+};
+
+struct Bounds {
+  glm::dvec3 lo{1e300}, hi{-1e300};
+
+  void add(const glm::dvec3& p) {
+    lo = glm::min(lo, p);
+    hi = glm::max(hi, p);
+  }
+  glm::dvec3 center() const { return lo + 0.5 * (hi - lo); }
+  double diagonal() const { return glm::length(hi - lo); }
+};
+
+// Box of all meshes and spheres.
+Bounds bounds(const Scene& scene);
+
+// The last step of every loader: drops zero-area triangles (with a notice that counts them) and meshes left empty, and
+// throws Error, naming scene.path, for what cannot be rendered: no geometry, no camera, no emitter, coordinates that
+// are not finite or above 1e15, indices out of range.
+void finish_scene(Scene& scene);
+
+enum class Normals { kFile, kSmooth, kFlat };
+
+// Replaces the normals of all meshes: kFile keeps them, kFlat drops them, kSmooth makes each corner's the area-weighted
+// mean of the faces around its vertex (Gouraud's, as the course program does).
+void apply_normals(Scene& scene, Normals normals);
+
+}  // namespace lanewise

@@ -1,0 +1,31 @@
+// What a user chooses for a render, apart from the scene. The command line fills it; its defaults are the program's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace lanewise {
+
+enum class View { kFile, kFit };  // the file's camera, or the course program's framing of the whole scene
+enum class Direct { kMis, kLight, kBsdf, kHemisphere };  // how direct light is estimated (kHemisphere: -H)
+enum class BsdfSampling { kVndf, kNdf, kCosine };        // how microfacets choose a direction
+enum class Fresnel { kExact, kSchlick, kCourse };
+
+struct Settings {
+  uint32_t width = 480;
+  uint32_t height = 360;
+  uint32_t spp = 16;           // camera samples per pixel, >= 1
+  uint32_t light_samples = 1;  // per light at every vertex, >= 1
+  uint32_t max_depth = 5;      // most scattering events on a path; 0: only light seen directly
+  uint32_t threads = 0;        // 0: all the machine has
+  uint32_t wave = 4096;        // paths in flight per thread, a multiple of kLanes
+  uint64_t seed = 0;
+  View view = View::kFile;
+  Direct direct = Direct::kMis;
+  BsdfSampling bsdf_sampling = BsdfSampling::kVndf;
+  Fresnel fresnel = Fresnel::kExact;
+  uint32_t adaptive_batch = 0;       // -a: samples between two decisions; 0: off
+  double adaptive_tolerance = 0.05;  // stop a pixel when 1.96 sigma / sqrt(n) <= tolerance * mean
+};
+
+}  // namespace lanewise

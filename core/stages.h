@@ -1,0 +1,44 @@
+// Every stage of the renderer by name, in the order in which data flows: what the wave runs, the profile counts and the
+// plan chooses from.
+#pragma once
+
+#include <cstdint>
+
+namespace lanewise {
+
+//   X(enumerator, name of the kernel)
+#define LANEWISE_STAGES(X)                \
+  X(kGenerate, generate)                  \
+  X(kIntersect, intersect)                \
+  X(kSort, sort)                          \
+  X(kEmission, emission)                  \
+  X(kRetire, retire)                      \
+  X(kSurface, surface)                    \
+  X(kSampleLight, sample_light)           \
+  X(kSampleHemisphere, sample_hemisphere) \
+  X(kLightDiffuse, light_diffuse)         \
+  X(kLightMicrofacet, light_microfacet)   \
+  X(kOcclude, occlude)                    \
+  X(kGatherEmission, gather_emission)     \
+  X(kShadeDiffuse, shade_diffuse)         \
+  X(kShadeMicrofacet, shade_microfacet)   \
+  X(kShadeMirror, shade_mirror)           \
+  X(kShadeGlass, shade_glass)             \
+  X(kRoulette, roulette)                  \
+  X(kAccumulate, accumulate)
+
+enum class Stage : uint8_t {
+#define LANEWISE_ENUMERATOR(enumerator, name) enumerator,
+  LANEWISE_STAGES(LANEWISE_ENUMERATOR)
+#undef LANEWISE_ENUMERATOR
+      kCount
+};
+constexpr int kStageCount = static_cast<int>(Stage::kCount);
+
+constexpr const char* kStageNames[] = {
+#define LANEWISE_NAME(enumerator, name) #name,
+    LANEWISE_STAGES(LANEWISE_NAME)
+#undef LANEWISE_NAME
+};
+
+}  // namespace lanewise

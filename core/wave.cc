@@ -1,0 +1,153 @@
+#include "core/wave.h"
+
+#include <chrono>
+#include <utility>
+
+namespace lanewise {
+namespace {
+
+Kernel* kernel_of(Stage stage) {
+  switch (stage) {
+    case Stage::kGenerate:
+      return generate;
+    case Stage::kIntersect:
+      return intersect;
+    case Stage::kEmission:
+      return emission;
+    case Stage::kRetire:
+      return retire;
+    case Stage::kSurface:
+      return surface;
+    case Stage::kSampleLight:
+      return sample_light;
+    case Stage::kSampleHemisphere:
+      return sample_hemisphere;
+    case Stage::kLightDiffuse:
+      return light_diffuse;
+    case Stage::kLightMicrofacet:
+      return light_microfacet;
+    case Stage::kOcclude:
+      return occlude;
+    case Stage::kGatherEmission:
+      return gather_emission;
+    case Stage::kShadeDiffuse:
+      return shade_diffuse;
+    case Stage::kShadeMicrofacet:
+      return shade_microfacet;
+    case Stage::kShadeMirror:
+      return shade_mirror;
+    case Stage::kShadeGlass:
+      return shade_glass;
+    case Stage::kRoulette:
+      return roulette;
+    case Stage::kSort:
+    case Stage::kAccumulate:
+    case Stage::kCount:
+      break;
+  }
+  return nullptr;
+}
+
+// Adds what happens in its lifetime to a stage's counter.
+class Timed {
+ public:
+  Timed(StageCounter& counter, uint32_t lanes, uint32_t paths) : counter_(counter), start_(Clock::now()) {
+    counter_.calls += 1;
+    counter_.lanes += lanes;
+    counter_.paths += paths;
+  }
+  ~Timed() { counter_.nanoseconds += static_cast<uint64_t>((Clock::now() - start_).count()); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static_assert(std::is_same_v<Clock::period, std::nano>);
+  StageCounter& counter_;
+  Clock::time_point start_;
+};
+
+}  // namespace
+
+void Wave::run(const Batch& batch, PixelSums* film) {
+  state_.batch = batch;
+  state_.step = {};
+  Range live{0, batch.paths};
+  uint32_t paths = batch.paths;
+  run(Stage::kGenerate, live);
+
+  for (uint32_t bounce = 0; paths > 0; ++bounce) {
+    state_.step.bounce = bounce;
+    run(Stage::kIntersect, live, paths);
+    const Bins bins = sort(live);
+    if (bounce > 0) profile_.bounce_rays += bins.paths(0, kBinCount) - bins.dead;
+    run(Stage::kEmission, bins[kEmitter]);
+
+    const bool last = bounce == plan_.settings.max_depth;
+    const uint32_t first_to_end = last ? 0 : kSurfaceBins;
+    run(Stage::kRetire, bins.span(first_to_end, kBinCount), bins.paths(first_to_end, kBinCount));
+    profile_.count_paths(bounce, bins.paths(first_to_end, kBinCount));
+    if (last) break;
+
+    live = bins.span(0, kSurfaceBins);
+    paths = bins.paths(0, kSurfaceBins);
+    run(Stage::kSurface, live, paths);
+    add_direct_light(bins);
+    for (const ShadeStages& stages : plan_.shade_stages) run(stages.shade, bins[stages.bin]);
+    if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);
+  }
+
+  const Timed timed(profile_[Stage::kAccumulate], round_up_to_lanes(batch.paths), batch.paths);
+  profile_.samples += batch.paths;
+  profile_.invalid_samples += accumulate(state_, film);
+}
+
+// Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn.
+void Wave::add_direct_light(const Bins& bins) {
+  const Range rough = bins.span(0, kRoughBins);
+  const uint32_t paths = bins.paths(0, kRoughBins);
+  const Settings& settings = plan_.settings;
+  if (paths == 0 || settings.direct == Direct::kBsdf) return;
+  const bool hemisphere = settings.direct == Direct::kHemisphere;  // meets all lights at once
+  const uint32_t lights = hemisphere ? 1 : static_cast<uint32_t>(plan_.lights.size());
+  for (uint32_t light = 0; light < lights; ++light) {
+    for (uint32_t sample = 0; sample < settings.light_samples; ++sample) {
+      state_.step.light = light;
+      state_.step.light_sample = sample;
+      run(hemisphere ? Stage::kSampleHemisphere : Stage::kSampleLight, rough, paths);
+      for (const ShadeStages& stages : plan_.shade_stages) {
+        if (stages.light != Stage::kCount) run(stages.light, bins[stages.bin]);
+      }
+      profile_.shadow_rays += count_shadow_rays(state_, rough);
+      run(hemisphere ? Stage::kGatherEmission : Stage::kOcclude, rough, paths);
+    }
+  }
+}
+
+void Wave::run(Stage stage, Range range, uint32_t paths) {
+  if (paths == 0) return;
+  const Timed timed(profile_[stage], round_up_to_lanes(range.size()), paths);
+  kernel_of(stage)(plan_, state_, range);
+}
+
+Bins Wave::sort(Range range) {
+  const Timed timed(profile_[Stage::kSort], round_up_to_lanes(range.size()), range.size());
+  const Bins bins = sort_by_bin(state_, spare_, range);
+  spare_.step = state_.step;
+  spare_.batch = state_.batch;
+  std::swap(state_, spare_);
+  return bins;
+}
+
+Wave::Wave(const Plan& plan, uint32_t size)
+    : plan_(plan),
+      size_(size),
+      buffers_{PathBuffer(size), PathBuffer(size)},
+      state_(buffers_[0].state()),
+      spare_(buffers_[1].state()) {
+  spare_.result_r = state_.result_r;
+  spare_.result_g = state_.result_g;
+  spare_.result_b = state_.result_b;
+}
+
+}  // namespace lanewise

@@ -1,0 +1,37 @@
+// The renderer: one thread's batch of paths, taken from the camera to the film by kernels in reading order.
+#pragma once
+
+#include "core/path_buffer.h"
+#include "core/plan.h"
+#include "core/profile.h"
+#include "kernels/kernels.h"
+
+namespace lanewise {
+
+class Wave {
+ public:
+  // size: the most paths in flight, a multiple of kLanes.
+  Wave(const Plan& plan, uint32_t size);
+
+  // Computes the batch's samples (at most size() paths) and adds them to film[pixel].
+  void run(const Batch& batch, PixelSums* film);
+
+  uint32_t size() const { return size_; }
+  const Profile& profile() const { return profile_; }
+
+ private:
+  // Runs a stage's kernel on the range, which holds `paths` living paths, and counts it.
+  void run(Stage stage, Range range, uint32_t paths);
+  void run(Stage stage, Range range) { run(stage, range, range.size()); }
+  Bins sort(Range range);
+  void add_direct_light(const Bins& bins);
+
+  const Plan& plan_;
+  uint32_t size_;
+  PathBuffer buffers_[2];
+  PathState state_;  // where the paths are now
+  PathState spare_;  // where the next sort moves them
+  Profile profile_;
+};
+
+}  // namespace lanewise

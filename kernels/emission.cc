@@ -1,0 +1,66 @@
+#include "kernels/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/emission.cc"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+#include "kernels/dispatch.h"
+#include "kernels/simd-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lanewise {
+namespace HWY_NAMESPACE {
+
+void Emission(const Plan& plan, const PathState& s, Range range) {
+  const DF d;
+  const DI di;
+  const VF zero = hn::Zero(d), one = Splat(1.0f);
+  const VF light_samples = Splat(static_cast<float>(plan.settings.light_samples));
+  const Direct direct = plan.settings.direct;
+  for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
+    const VI prim = hn::BitCast(di, hn::Load(DU(), s.prim + i));
+    const Vec3 dir = LoadVec3(s.d_x, s.d_y, s.d_z, i);
+    const VF t = hn::Load(d, s.t + i);
+    const VI shape = hn::ShiftLeft<2>(prim);
+    Vec3 n = GatherVec3(plan.prim_shape.data(), shape);
+    if (plan.spheres > 0) {
+      const MF is_sphere = hn::RebindMask(d, hn::Gt(prim, hn::Set(di, static_cast<int32_t>(plan.triangles) - 1)));
+      const Vec3 hit = MulAdd(t, dir, LoadVec3(s.o_x, s.o_y, s.o_z, i));
+      n = IfThenElse(is_sphere, Normalize(Sub(hit, n)), n);
+    }
+    const VF cosine = hn::Neg(Dot(n, dir));
+
+    const VI light = hn::BitCast(di, hn::GatherIndex(DU(), plan.prim_light.data(), prim));
+    const float* table = plan.light_table.data();
+    const VI entry = hn::ShiftLeft<2>(light);
+    const Vec3 radiance = GatherVec3(table, entry);
+    const VF area = hn::GatherIndex(d, table + 3, entry);
+
+    const VF pdf = hn::Load(d, s.pdf + i);
+    const MF alone = hn::Eq(pdf, zero);  // no light sample could have made this path
+    VF weight = one;
+    if (direct == Direct::kMis) {
+      const VF light_pdf = hn::Div(hn::Mul(light_samples, hn::Mul(t, t)), hn::Mul(area, cosine));
+      const VF ratio = hn::Div(light_pdf, pdf);
+      weight = hn::IfThenElse(alone, one, hn::Div(one, hn::MulAdd(ratio, ratio, one)));
+    } else if (direct != Direct::kBsdf) {
+      weight = hn::IfThenElseZero(alone, one);
+    }
+    weight = hn::IfThenElseZero(hn::Gt(cosine, zero), weight);
+
+    const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
+    const Vec3 L = LoadVec3(s.L_r, s.L_g, s.L_b, i);
+    StoreVec3(MulAdd(weight, Mul(beta, radiance), L), s.L_r, s.L_g, s.L_b, i);
+  }
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace lanewise
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lanewise {
+LANEWISE_KERNEL(Emission, emission);
+}  // namespace lanewise
+#endif

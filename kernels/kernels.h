@@ -1,0 +1,118 @@
+// Table of contents: every kernel, in the order in which data flows through them.
+//
+// A kernel is a pure function of the plan and of its lanes: no lane depends on another, nothing is allocated, read from
+// a file or kept. It may touch slots [range.begin, range.end rounded up to kLanes) and writes only the fields listed
+// (padding lanes hold the harmless dummy path). Each runs the best instruction set that the machine has and hwy allows;
+// its scalar twin of the same name is kernels/reference/<file>.h, a template over float (what the kernel reproduces)
+// and double (the oracle). "p" below is the hit point in o_x, o_y, o_z once `surface` has run. Radiance in W / (m^2
+// sr), lengths in scene units, densities per steradian.
+#pragma once
+
+#include <cstdint>
+
+#include "core/path_state.h"
+#include "core/plan.h"
+#include "core/types.h"
+
+namespace lanewise {
+
+using Kernel = void(const Plan&, const PathState&, Range);
+
+// Starts camera paths: pinhole at the eye, uniform in the pixel (a box filter of one pixel).
+// reads: batch. writes: pixel sample slot o d beta L pdf.
+void generate(const Plan& plan, const PathState& s, Range range);
+
+// Closest hit. Triangles are watertight (edge tests with exact signs after Woop, Benthin & Wald, JCGT 2013), spheres by
+// the stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path
+// with beta = 0 is not traced and goes to kFinished, as does one that misses. reads: o d beta. writes: prim t u v bin.
+void intersect(const Plan& plan, const PathState& s, Range range);
+
+// Where each bin lies after the sort; bins begin at multiples of kLanes.
+struct Bins {
+  Range bin[kBinCount];
+  uint32_t dead = 0;  // of kFinished: paths that came with beta = 0, which intersect does not trace
+
+  Range operator[](uint32_t b) const { return bin[b]; }
+  // From the first slot of bin `first` to the last of bin `last` - 1, with the padding between.
+  Range span(uint32_t first, uint32_t last) const { return {bin[first].begin, bin[last - 1].end}; }
+  uint32_t paths(uint32_t first, uint32_t last) const {
+    uint32_t n = 0;
+    for (uint32_t b = first; b < last; ++b) n += bin[b].size();
+    return n;
+  }
+};
+
+// Moves every path to its bin, and drops the padding that the sort before left: stable, bins contiguous, each padded
+// with the dummy path to a multiple of kLanes. The only kernel in which lanes meet. reads: bin, slot and all KEPT
+// fields of from. writes: all KEPT fields of to, all fields of its padding.
+Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
+
+// Adds the radiance of the light that was hit from its front, weighted against light sampling by the power heuristic
+// (Veach 1997, eq. 9.13 with exponent 2).
+// reads: prim t d beta pdf, step. writes: L.
+void emission(const Plan& plan, const PathState& s, Range range);
+
+// Hands the radiance of finished paths over to the wave's result, by slot.
+// reads: slot L. writes: result.
+void retire(const Plan& plan, const PathState& s, Range range);
+
+// From a hit to a shading point: the hit point, put back onto the surface along its normal, its normals and the
+// distance that a ray origin must keep (Waechter & Binder, Ray Tracing Gems ch. 6; pbrt 4 sec. 6.8 for the bounds).
+// reads: prim t u v o d. writes: o n s err.
+void surface(const Plan& plan, const PathState& s, Range range);
+
+// Samples light step.light by area and aims at it; l_pdf is 0 where the surface is behind the light.
+// reads: pixel sample o n err. writes: l l_pdf.
+void sample_light(const Plan& plan, const PathState& s, Range range);
+
+// -H: aims uniformly into the hemisphere around the viewer's side of the shading normal; l is a unit vector.
+// reads: pixel sample d s. writes: l l_pdf.
+void sample_hemisphere(const Plan& plan, const PathState& s, Range range);
+
+// light_<material>: what the light sample adds if it is seen: c = beta f |cos| radiance / (l_pdf samples), times the
+// MIS weight against the material's own density. With -H the radiance is not known yet and left out. reads: d s beta l
+// l_pdf prim, step. writes: c. shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves
+// the origin off the surface. reads: pixel sample prim o d n s err beta. writes: o d beta pdf.
+void light_diffuse(const Plan& plan, const PathState& s, Range range);
+void shade_diffuse(const Plan& plan, const PathState& s, Range range);
+// Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
+void light_microfacet(const Plan& plan, const PathState& s, Range range);
+void shade_microfacet(const Plan& plan, const PathState& s, Range range);
+// Perfect reflection; pdf = 0 (delta).
+void shade_mirror(const Plan& plan, const PathState& s, Range range);
+// Smooth dielectric: reflects or refracts by the Fresnel reflectance; refracted radiance scales with the squared ratio
+// of indices (Veach 1997, ch. 5); pdf = 0 (delta).
+void shade_glass(const Plan& plan, const PathState& s, Range range);
+
+// Any hit on the open segment from the offset hit point to the light sample: if there is none, L += c. Not traced where
+// c = 0. reads: o n err l c. writes: L.
+void occlude(const Plan& plan, const PathState& s, Range range);
+
+// -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter. Not traced where c = 0.
+// reads: o n err l c. writes: L.
+void gather_emission(const Plan& plan, const PathState& s, Range range);
+
+// Russian roulette from bounce kRouletteBounce on: survives with probability q = min(kMaxSurvival, max channel of beta)
+// and beta / q, else beta = 0; unbiased for every q. reads: pixel sample beta, step. writes: beta.
+void roulette(const Plan& plan, const PathState& s, Range range);
+constexpr uint32_t kRouletteBounce = 4;
+constexpr float kMaxSurvival = 0.95f;
+
+// A pixel's sums over its samples.
+struct PixelSums {
+  double r = 0, g = 0, b = 0;
+  double y2 = 0;  // of squared luminance
+};
+
+// Rec. 709 luminance of linear RGB.
+constexpr double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
+
+// Adds the batch's samples to their pixels, film[pixel], each pixel's in the order of its samples: so the sums have the
+// same bits however samples are cut into waves. A sample with a NaN, infinite or negative channel counts as black.
+// reads: batch, result. Returns the number of such invalid samples.
+uint32_t accumulate(const PathState& s, PixelSums* film);
+
+// How many paths of the range have a light sample worth a shadow ray: c != 0.
+uint32_t count_shadow_rays(const PathState& s, Range range);
+
+}  // namespace lanewise

@@ -1,0 +1,38 @@
+// Scalar twin of kernels/shading-inl.h.
+#pragma once
+
+#include "core/plan.h"
+#include "kernels/reference/vec3.h"
+
+namespace lanewise::reference {
+
+template <class T>
+Vec3<T> viewer_side(const Vec3<T>& s, const Vec3<T>& d) {
+  return glm::dot(d, s) > 0 ? -s : s;
+}
+
+template <class T>
+const PlanMaterial& material_at(const Plan& plan, const Path<T>& p) {
+  return plan.materials[plan.prim_material[p.prim]];
+}
+
+// Radiance of the light times w / (n l_pdf), w the power heuristic's weight against bsdf_pdf; needs l_pdf > 0.
+template <class T>
+Vec3<T> light_weight(const Plan& plan, const Path<T>& p, T bsdf_pdf) {
+  const Direct direct = plan.settings.direct;
+  const T n_pdf = static_cast<T>(plan.settings.light_samples) * p.l_pdf;
+  const T ratio = direct == Direct::kMis ? bsdf_pdf / n_pdf : 0;
+  const Vec3<T> radiance = direct == Direct::kHemisphere ? Vec3<T>(1) : vec3<T>(plan.lights[p.step.light].radiance);
+  return radiance / (n_pdf * (1 + ratio * ratio));
+}
+
+// Sends the path on from the hit point in direction wi.
+template <class T>
+void leave(Path<T>& p, const Vec3<T>& wi, const Vec3<T>& weight, T pdf) {
+  LANEWISE_SET_RGB(p, beta, LANEWISE_RGB(p, beta) * weight);
+  LANEWISE_SET_VEC3(p, o, offset_origin(LANEWISE_VEC3(p, o), LANEWISE_VEC3(p, n), p.err, wi));
+  LANEWISE_SET_VEC3(p, d, wi);
+  p.pdf = pdf;
+}
+
+}  // namespace lanewise::reference

@@ -1,0 +1,82 @@
+// What the shading kernels of all materials share: the viewer's side, the material's members, the weight of a light
+// sample. Scalar twin: kernels/reference/shading.h.
+#if defined(LANEWISE_KERNELS_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LANEWISE_KERNELS_SHADING_INL_H_
+#undef LANEWISE_KERNELS_SHADING_INL_H_
+#else
+#define LANEWISE_KERNELS_SHADING_INL_H_
+#endif
+
+#include <cstring>
+
+#include "core/plan.h"
+#include "kernels/math-inl.h"
+#include "kernels/simd-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lanewise {
+namespace HWY_NAMESPACE {
+
+// The shading normal on the side that a ray in direction d arrives from: surfaces scatter alike from both sides.
+HWY_INLINE Vec3 ViewerSide(const Vec3& s, const Vec3& d) {
+  const MF behind = hn::Gt(Dot(d, s), hn::Zero(DF()));
+  const VF flip = hn::IfThenElseZero(behind, Splat(-0.0f));
+  return {hn::Xor(s.x, flip), hn::Xor(s.y, flip), hn::Xor(s.z, flip)};
+}
+
+// The materials of the paths from slot i on, one a lane. Members are fetched four at a time lane by lane and
+// transposed: with gather instructions shade_diffuse takes a quarter longer on Zen 3.
+struct LaneMaterials {
+  const float* lane[hn::MaxLanes(DF())];
+
+  LaneMaterials(const Plan& plan, const PathState& s, size_t i) {
+    static_assert(sizeof(PlanMaterial) == kMaterialStride * sizeof(float));
+    const float* materials = plan.materials[0].reflectance;
+    for (size_t k = 0; k < hn::Lanes(DF()); ++k) {
+      lane[k] = materials + size_t{kMaterialStride} * plan.prim_material[s.prim[i + k]];
+    }
+  }
+
+  // Members first .. first + 3.
+  HWY_INLINE void Get4(int32_t first, VF& a, VF& b, VF& c, VF& d) const {
+    HWY_ALIGN float values[4 * hn::MaxLanes(DF())];
+    for (size_t k = 0; k < hn::Lanes(DF()); ++k) std::memcpy(values + 4 * k, lane[k] + first, 4 * sizeof(float));
+    hn::LoadInterleaved4(DF(), values, a, b, c, d);
+  }
+
+  HWY_INLINE Vec3 GetVec3(int32_t first) const {
+    Vec3 v;
+    VF next;
+    Get4(first, v.x, v.y, v.z, next);
+    return v;
+  }
+};
+
+// What is the same for every path of a light sample.
+struct LightTerms {
+  Vec3 radiance;  // of the light; with -H it is not known yet, and 1 stands for it
+  VF samples;
+  VF mis;  // 1: weigh against the material's own density, 0: do not
+
+  explicit LightTerms(const Plan& plan, const Step& step)
+      : radiance{Splat(1.0f), Splat(1.0f), Splat(1.0f)},
+        samples(Splat(static_cast<float>(plan.settings.light_samples))),
+        mis(Splat(plan.settings.direct == Direct::kMis ? 1.0f : 0.0f)) {
+    if (plan.settings.direct != Direct::kHemisphere) radiance = SplatVec3(plan.lights[step.light].radiance);
+  }
+
+  // w / (n l_pdf) with the power heuristic's w = (n l_pdf)^2 / ((n l_pdf)^2 + bsdf_pdf^2), by ratios, so that no square
+  // leaves float's range. Of use only where l_pdf > 0.
+  HWY_INLINE VF Weight(VF l_pdf, VF bsdf_pdf) const {
+    const VF n_pdf = hn::Mul(samples, l_pdf);
+    const VF ratio = hn::Mul(mis, hn::Min(hn::Div(bsdf_pdf, n_pdf), Splat(1e18f)));
+    return hn::Div(Splat(1.0f), hn::Mul(n_pdf, hn::MulAdd(ratio, ratio, Splat(1.0f))));
+  }
+};
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace lanewise
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,130 @@
+#include <bit>
+
+#include "core/path_buffer.h"
+#include "kernels/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/sort.cc"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+#include "kernels/compress-inl.h"
+#include "kernels/simd-inl.h"
+
+#ifndef LANEWISE_KERNELS_SORT_ONCE
+#define LANEWISE_KERNELS_SORT_ONCE
+namespace lanewise {
+
+// All fields of a state as arrays of 4-byte words, the KEPT ones first, as the list has them.
+struct FieldWords {
+#define LANEWISE_COUNT(type, name, meaning) +1
+#define LANEWISE_IGNORE(type, name, meaning)
+  static constexpr int kKept = 0 LANEWISE_PATH_FIELDS(LANEWISE_COUNT, LANEWISE_IGNORE);
+  static constexpr int kAll = 0 LANEWISE_PATH_FIELDS(LANEWISE_COUNT, LANEWISE_COUNT);
+#undef LANEWISE_IGNORE
+#undef LANEWISE_COUNT
+  uint32_t* words[kAll];
+
+  explicit FieldWords(const PathState& s) {
+    int n = 0;
+#define LANEWISE_WORDS(type, name, meaning) words[n++] = reinterpret_cast<uint32_t*>(s.name);
+    LANEWISE_PATH_FIELDS(LANEWISE_WORDS, LANEWISE_WORDS)
+#undef LANEWISE_WORDS
+  }
+};
+
+// What the padding of every bin is filled with: PathBuffer's dummy path.
+struct DummyWords {
+  uint32_t words[FieldWords::kAll];
+
+  explicit DummyWords(uint32_t capacity) {
+    const Path<float> dummy = PathBuffer::dummy_path(capacity);
+    int n = 0;
+#define LANEWISE_WORD(type, name, meaning) words[n++] = std::bit_cast<uint32_t>(dummy.name);
+    LANEWISE_PATH_FIELDS(LANEWISE_WORD, LANEWISE_WORD)
+#undef LANEWISE_WORD
+  }
+};
+
+}  // namespace lanewise
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace lanewise {
+namespace HWY_NAMESPACE {
+
+// The bins of the paths at slot i; padding gets kBinCount, which is no bin.
+HWY_INLINE VU LoadBins(const PathState& from, size_t i, VU padding_slot) {
+  const DU d;
+  const auto padding = hn::Eq(hn::Load(d, from.slot + i), padding_slot);
+  return hn::IfThenElse(padding, hn::Set(d, uint32_t{kBinCount}), hn::Load(d, from.bin + i));
+}
+
+// Counts first, then moves bin after bin. Within a bin each vector's members are compressed in a register and stored
+// whole: what a store writes past the bin's end is overwritten by the padding or by the next bin, which comes later.
+// (Compressing stores are microcode on Zen 4, masked stores are slow on Zen 3; plain stores are fast everywhere.)
+Bins SortByBin(const PathState& from, const PathState& to, Range range) {
+  const DU d;
+  const size_t lanes = hn::Lanes(d);
+  const VU padding_slot = hn::Set(d, from.capacity);
+
+  Bins bins;
+  uint32_t count[kBinCount] = {};
+  for (size_t i = range.begin; i < range.end; i += lanes) {
+    const VU bin = LoadBins(from, i, padding_slot);
+    for (uint32_t b = 0; b < kBinCount; ++b) {
+      count[b] += static_cast<uint32_t>(hn::CountTrue(d, hn::Eq(bin, hn::Set(d, b))));
+    }
+  }
+
+  const FieldWords source(from), target(to);
+  const DummyWords dummy(from.capacity);
+  uint32_t cursor = 0;
+  for (uint32_t b = 0; b < kBinCount; ++b) {
+    bins.bin[b] = {cursor, cursor + count[b]};
+    if (count[b] == 0) continue;
+    for (size_t i = range.begin; i < range.end; i += lanes) {
+      const auto member = hn::Eq(LoadBins(from, i, padding_slot), hn::Set(d, b));
+      const size_t members = hn::CountTrue(d, member);
+      if (members == 0) continue;
+      if (members == lanes) {
+        for (int f = 0; f < FieldWords::kKept; ++f) {
+          hn::StoreU(hn::Load(d, source.words[f] + i), d, target.words[f] + cursor);
+        }
+      } else {
+        const Compressor compress(member);
+        for (int f = 0; f < FieldWords::kKept; ++f) {
+          hn::StoreU(compress(hn::Load(d, source.words[f] + i)), d, target.words[f] + cursor);
+        }
+      }
+      cursor += static_cast<uint32_t>(members);
+    }
+    for (int f = 0; f < FieldWords::kAll; ++f) {
+      const VU fill = hn::Set(d, dummy.words[f]);
+      for (size_t k = 0; k < kLanes; k += lanes) hn::StoreU(fill, d, target.words[f] + cursor + k);
+    }
+    cursor = round_up_to_lanes(cursor);
+  }
+
+  const Range finished = bins[kFinished];
+  const DF df;
+  for (size_t i = finished.begin; i < finished.end; i += lanes) {
+    const auto dead = hn::Eq(MaxElement(LoadVec3(to.beta_r, to.beta_g, to.beta_b, i)), hn::Zero(df));
+    const auto real = hn::Ne(hn::Load(d, to.slot + i), padding_slot);
+    bins.dead += static_cast<uint32_t>(hn::CountTrue(df, hn::And(dead, hn::RebindMask(df, real))));
+  }
+  return bins;
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace lanewise
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lanewise {
+HWY_EXPORT(SortByBin);
+Bins sort_by_bin(const PathState& from, const PathState& to, Range range) {
+  return HWY_DYNAMIC_DISPATCH(SortByBin)(from, to, range);
+}
+}  // namespace lanewise
+#endif

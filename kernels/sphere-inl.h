@@ -1,0 +1,47 @@
+// One sphere test for the flat list and the tree's leaves: Haines, Guenther & Akenine-Moeller, Precision Improvements
+// for Ray/Sphere Intersection, Ray Tracing Gems ch. 7, for directions of any length.
+#if defined(LANEWISE_KERNELS_SPHERE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LANEWISE_KERNELS_SPHERE_INL_H_
+#undef LANEWISE_KERNELS_SPHERE_INL_H_
+#else
+#define LANEWISE_KERNELS_SPHERE_INL_H_
+#endif
+
+#include <limits>
+
+#include "kernels/simd-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lanewise {
+namespace HWY_NAMESPACE {
+
+// The nearest root above 0 in units of the direction d, +inf for none. f: origin - center; a = d.d and inv_a = 1 / a,
+// which a ray computes once.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V SphereRoot(D d, const V (&f)[3], const V (&dir)[3], V a, V inv_a, V radius) {
+  const V zero = hn::Zero(d);
+  const V b = hn::Neg(hn::MulAdd(f[0], dir[0], hn::MulAdd(f[1], dir[1], hn::Mul(f[2], dir[2]))));
+  // The foot of the perpendicular from the center: its distance gives the discriminant without cancellation when the
+  // sphere is many radii away.
+  const V s = hn::Mul(b, inv_a);
+  const V x = hn::MulAdd(s, dir[0], f[0]), y = hn::MulAdd(s, dir[1], f[1]), z = hn::MulAdd(s, dir[2], f[2]);
+  const V r2 = hn::Mul(radius, radius);
+  const V inside2 = hn::Sub(r2, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+  // Below 0 inside the sphere, where there is always a root ahead, whatever rounding makes of a grazing discriminant.
+  const V c = hn::Sub(hn::MulAdd(f[0], f[0], hn::MulAdd(f[1], f[1], hn::Mul(f[2], f[2]))), r2);
+  const V depth2 = hn::IfThenElse(hn::Lt(c, zero), hn::Max(inside2, zero), inside2);
+  // The roots are c / q and q / a: no difference of like numbers. Of a negative depth2 the square root is NaN.
+  const V q = hn::Add(b, hn::CopySign(hn::Sqrt(hn::Mul(a, depth2)), b));
+  const V t0 = hn::Div(c, q), t1 = hn::Mul(q, inv_a);
+  const V near = hn::Min(t0, t1), far = hn::Max(t0, t1);
+  const V root = hn::IfThenElse(hn::Gt(near, zero), near, far);
+  return hn::IfThenElse(hn::And(hn::Ge(depth2, zero), hn::Gt(root, zero)), root,
+                        hn::Set(d, std::numeric_limits<float>::infinity()));
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace lanewise
+HWY_AFTER_NAMESPACE();
+
+#endif

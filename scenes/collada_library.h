@@ -1,0 +1,43 @@
+// What nodes instantiate, each read once, on first use.
+#pragma once
+
+#include <cstdint>
+#include <pugixml.hpp>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/scene.h"
+#include "scenes/collada_document.h"
+#include "scenes/collada_geometry.h"
+
+namespace lanewise::collada {
+
+class Library {
+ public:
+  // Materials and notices go to the scene. Both arguments must outlive the library.
+  Library(const Document& document, Scene& scene) : document_(document), scene_(scene), arrays_(document) {}
+
+  // The <geometry> that the <instance_geometry> refers to.
+  const Geometry& geometry(pugi::xml_node instance);
+
+  // The index in the scene of the material that the <instance_geometry> binds to the symbol of `user`, an element for
+  // errors; without a binding the material whose id the symbol is. An empty symbol means the first binding, or a
+  // default grey if there is none.
+  uint32_t material(pugi::xml_node instance, const std::string& symbol, pugi::xml_node user);
+
+  // Adds a notice to the scene unless it has been given before.
+  void notice(const std::string& text);
+
+ private:
+  uint32_t material(pugi::xml_node element);
+
+  const Document& document_;
+  Scene& scene_;
+  ArrayCache arrays_;
+  std::unordered_map<size_t, Geometry> geometries_;  // by hash_value, an element's identity
+  std::unordered_map<size_t, uint32_t> materials_;
+  std::unordered_set<std::string> notices_;
+};
+
+}  // namespace lanewise::collada

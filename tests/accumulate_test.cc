@@ -1,0 +1,110 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/film.h"
+#include "tests/kernel_harness.h"
+
+namespace lanewise {
+
+TEST_CASE("retire: radiance goes to its slot") {
+  const Plan plan = test::test_plan();
+  test::for_each_target([&](const char* target) {
+    CAPTURE(target);
+    for (uint32_t n = 0; n <= 2 * kLanes; ++n) {
+      PathBuffer buffer(64);
+      PathState& s = buffer.state();
+      for (uint32_t i = 0; i < n; ++i) s.slot[i] = (i * 7) % 64, s.L_r[i] = 1.0f + float(i), s.L_g[i] = 2, s.L_b[i] = 3;
+      retire(plan, s, {0, n});
+      bool right = true;
+      for (uint32_t i = 0; i < n; ++i) {
+        right &= s.result_r[(i * 7) % 64] == 1.0f + float(i) && s.result_g[(i * 7) % 64] == 2 &&
+                 s.result_b[(i * 7) % 64] == 3;
+      }
+      CHECK(right);
+    }
+  });
+}
+
+TEST_CASE("accumulate: the same bits however samples are cut into waves; invalid samples are black and counted") {
+  constexpr uint32_t kSamples = 13, kPixels = 9, kTotal = kSamples * kPixels;
+  const std::vector<uint32_t> pixels = {4, 2, 8, 0, 1, 3, 5, 6, 7};
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<float> unit(0.0f, 3.0f);
+  std::vector<float> radiance(3 * kTotal);
+  for (float& x : radiance) x = unit(rng);
+  radiance[3 * 20] = std::numeric_limits<float>::quiet_NaN();
+  radiance[3 * 40 + 1] = std::numeric_limits<float>::infinity();
+  radiance[3 * 60 + 2] = -1e-6f;
+
+  std::vector<PixelSums> want(kPixels);
+  for (uint32_t j = 0; j < kTotal; ++j) {
+    if (j == 20 || j == 40 || j == 60) continue;
+    PixelSums& sums = want[pixels[j / kSamples]];
+    const double r = radiance[3 * j], g = radiance[3 * j + 1], b = radiance[3 * j + 2];
+    sums.r += r, sums.g += g, sums.b += b, sums.y2 += luminance(r, g, b) * luminance(r, g, b);
+  }
+  test::for_each_target([&](const char* target) {
+    CAPTURE(target);
+    for (const uint32_t wave : {1u, 7u, 16u, 40u, 117u}) {
+      std::vector<PixelSums> film(kPixels);
+      uint32_t invalid = 0;
+      for (uint32_t first = 0; first < kTotal; first += wave) {
+        PathBuffer buffer(128);
+        PathState& s = buffer.state();
+        s.batch = {
+            .pixels = pixels.data(), .samples = kSamples, .first_path = first, .paths = std::min(wave, kTotal - first)};
+        for (uint32_t i = 0; i < 128; ++i) {
+          const uint32_t j = first + i;
+          const bool inside = i < s.batch.paths;  // what lies behind the last path must not count
+          s.result_r[i] = inside ? radiance[3 * j] : NAN;
+          s.result_g[i] = inside ? radiance[3 * j + 1] : NAN;
+          s.result_b[i] = inside ? radiance[3 * j + 2] : NAN;
+        }
+        invalid += accumulate(s, film.data());
+      }
+      CHECK(invalid == 3);
+      bool same = true;
+      for (uint32_t i = 0; i < kPixels; ++i) {
+        same &= film[i].r == want[i].r && film[i].g == want[i].g && film[i].b == want[i].b && film[i].y2 == want[i].y2;
+      }
+      CHECK(same);
+    }
+  });
+}
+
+TEST_CASE("count_shadow_rays: paths whose light sample is worth a ray") {
+  test::for_each_target([](const char* target) {
+    CAPTURE(target);
+    for (uint32_t n = 0; n <= 2 * kLanes; ++n) {
+      PathBuffer buffer(64);
+      uint32_t want = 0;
+      for (uint32_t i = 0; i < n; ++i) {
+        (i % 3 == 0   ? buffer.state().c_r
+         : i % 3 == 1 ? buffer.state().c_g
+                      : buffer.state().c_b)[i] = i % 5 ? 1e-30f : 0.0f;
+        want += i % 5 != 0;
+      }
+      CHECK(count_shadow_rays(buffer.state(), {0, n}) == want);
+    }
+  });
+}
+
+TEST_CASE("film: the mean, and when a pixel has converged") {
+  Film film(2);
+  film.sums[0] = {2, 4, 6, 0};
+  film.samples[0] = 2;
+  const Image image = develop(film, 2, 1);
+  CHECK(image.rgb[0] == 1);
+  CHECK(image.rgb[2] == 3);
+  CHECK(image.rgb[3] == 0);
+
+  // 100 samples of luminance 1 +- 1: sigma / sqrt(n) is 0.1.
+  const PixelSums noisy{100, 100, 100, 200};
+  CHECK(has_converged(noisy, 100, 0.2));
+  CHECK_FALSE(has_converged(noisy, 100, 0.19));
+  CHECK(has_converged(PixelSums{}, 4, 0.05));  // black so far: 0 <= 0
+}
+
+}  // namespace lanewise

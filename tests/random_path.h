@@ -1,0 +1,15 @@
+// Random content for paths, for tests and benchmarks of kernels.
+#pragma once
+
+#include <random>
+
+#include "core/path_state.h"
+#include "core/plan.h"
+
+namespace lanewise::test {
+
+// Random but plausible content for every field: unit directions and normals with s near n, positive throughput, prims
+// of the plan, distinct pixels, samples and slots.
+void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t index);
+
+}  // namespace lanewise::test

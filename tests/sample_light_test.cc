@@ -1,0 +1,99 @@
+#include "kernels/reference/sample_light.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/kernel_harness.h"
+#include "tests/test_scene.h"
+
+namespace lanewise {
+namespace {
+
+const std::vector<test::Write> kWrites = {{"l_x", 4e-6, 0}, {"l_y", 4e-6, 0}, {"l_z", 4e-6, 0}, {"l_pdf", 1e-5, 2e-4}};
+
+// Samples nearly in the light's plane have a density without bound.
+bool grazes(const Plan& plan, const Path<float>& p) {
+  const PlanLight& light = plan.lights[p.step.light];
+  return p.l_pdf > 500 / light.area || (p.l_pdf == 0 && light.patches == 0);
+}
+
+void check_light(const Plan& plan, uint32_t light) {
+  test::KernelCase test{.kernel = sample_light, .twin = reference::sample_light<float>, .writes = kWrites};
+  test.borderline = [&](const Path<float>&, const Path<float>& after) { return grazes(plan, after); };
+  test.max_borderline = 0.6;
+  test.step = {.bounce = 1, .light = light, .light_sample = 1};
+  test::check_kernel(plan, test);
+}
+
+// A scene whose first light is a fan of triangles of different sizes.
+Scene fan_scene() {
+  Scene scene = test::test_box();
+  Mesh& light = scene.meshes[5];
+  light.positions = {{0, 0, 1.4}, {0.4, 0, 1.4}, {0.3, 0.3, 1.4}, {0, 0.2, 1.4}, {-0.5, 0.4, 1.4}, {-0.2, -0.3, 1.4}};
+  light.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 5, 4}, {0, 1, 5}};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("sample_light: SIMD against its twin for a parallelogram, a triangle, many patches, a sphere") {
+  Settings settings;
+  settings.light_samples = 2;
+  const Plan plan = test::test_plan(settings);
+  REQUIRE(plan.lights.size() == 2);
+  CHECK(plan.lights[0].patches == 1);
+  CHECK(plan.light_patches[0].is_triangle == 0);
+  CHECK(plan.light_patches[1].is_triangle == 1);
+  check_light(plan, 0);
+  check_light(plan, 1);
+
+  const Plan fan = make_plan(fan_scene(), settings);
+  CHECK(fan.lights[0].patches == 5);
+  check_light(fan, 0);
+
+  Scene scene = test::test_box();
+  scene.spheres[2].material = test::kSmallLight;
+  const Plan sphere = make_plan(scene, settings);
+  check_light(sphere, 2);
+}
+
+TEST_CASE("sample_light: 1 / pdf integrates to the solid angle of the light") {
+  // A point below the middle of the 0.8 x 0.6 light: the solid angle of a rectangle, seen from its axis.
+  const Plan plan = test::test_plan();
+  const double h = 1.0, a = 0.4, b = 0.3;
+  const double solid_angle = 4 * std::asin(a * b / std::sqrt((a * a + h * h) * (b * b + h * h)));
+  double sum = 0;
+  constexpr int kSamples = 100000;
+  for (int i = 0; i < kSamples; ++i) {
+    Path<double> p;
+    p.sample = static_cast<uint32_t>(i);
+    p.o_z = 1.49 - h - plan.center[2];
+    p.n_z = 1;
+    reference::sample_light(plan, p);
+    sum += 1 / p.l_pdf;
+  }
+  CHECK(sum / kSamples == doctest::Approx(solid_angle).epsilon(0.002));
+}
+
+TEST_CASE("sample_light: patches are chosen by area and points are uniform") {
+  const Plan plan = make_plan(fan_scene(), {});
+  const PlanLight& light = plan.lights[0];
+  // The mean of points uniform on the fan is its centroid.
+  glm::dvec3 centroid(0), mean(0);
+  double below = 0;
+  for (uint32_t k = 0; k < light.patches; ++k) {
+    const LightPatch& patch = plan.light_patches[light.first_patch + k];
+    const glm::dvec3 corner = reference::vec3<double>(patch.corner);
+    centroid +=
+        (patch.cdf - below) * (corner + (reference::vec3<double>(patch.e1) + reference::vec3<double>(patch.e2)) / 3.0);
+    below = patch.cdf;
+  }
+  CHECK(below == 1);
+  constexpr int kSamples = 100000;
+  for (int i = 0; i < kSamples; ++i) {
+    const auto random = reference::draw_random<double>(3, static_cast<uint32_t>(i), 2, 0);
+    mean += reference::sample_patch(plan, light, random).q / double(kSamples);
+  }
+  CHECK(glm::length(mean - centroid) < 0.003);
+}
+
+}  // namespace lanewise

@@ -1,0 +1,119 @@
+#include "kernels/reference/shade_diffuse.h"
+
+#include <doctest/doctest.h>
+
+#include "kernels/reference/sample_hemisphere.h"
+#include "tests/kernel_harness.h"
+#include "tests/shading_harness.h"
+
+namespace lanewise {
+namespace {
+
+const std::vector<test::Write> kScatterWrites = {
+    {"beta_r", 0, 0}, {"beta_g", 0, 0}, {"beta_b", 0, 0}, {"o_x", 1e-7, 0}, {"o_y", 1e-7, 0},
+    {"o_z", 1e-7, 0}, {"d_x", 2e-6, 0}, {"d_y", 2e-6, 0}, {"d_z", 2e-6, 0}, {"pdf", 1e-9, 5e-7}};
+const std::vector<test::Write> kLightWrites = {{"c_r", 3e-7, 2e-5}, {"c_g", 3e-7, 2e-5}, {"c_b", 3e-7, 2e-5}};
+
+// Grazing and straight arrivals, on either side, and light samples in the surface's plane, of no length or of no use.
+void awkward(std::mt19937& rng, Path<float>& p) {
+  const float cosines[] = {1, -1, 1.7e-4f, -1.7e-4f, 0.5f, -0.5f};
+  test::arrive(rng, p, cosines[rng() % 6]);
+  switch (rng() % 4) {
+    case 0:
+      p.l_x = p.l_y = p.l_z = 0, p.l_pdf = 0;
+      break;
+    case 1:
+      p.l_x = 1e6f * p.s_x, p.l_y = 1e6f * p.s_y, p.l_z = 1e6f * p.s_z, p.l_pdf = 1e12f;
+      break;
+    case 2:
+      p.beta_r = p.beta_g = p.beta_b = 0;
+      break;
+    default:
+      break;
+  }
+}
+
+Plan greys(const Settings& settings = {}) {
+  return test::material_plan({test::grey(0), test::grey(0.6f), test::grey(1)}, settings);
+}
+
+}  // namespace
+
+TEST_CASE("shade_diffuse, light_diffuse: SIMD against their twins") {
+  const test::KernelCase shade{
+      .kernel = shade_diffuse, .twin = reference::shade_diffuse<float>, .writes = kScatterWrites};
+  test::check_kernel(test::test_plan(), shade);
+  test::check_kernel(greys(), shade, awkward);
+  for (const Direct direct : {Direct::kMis, Direct::kLight, Direct::kHemisphere}) {
+    Settings settings;
+    settings.direct = direct;
+    settings.light_samples = 3;
+    const test::KernelCase light{
+        .kernel = light_diffuse, .twin = reference::light_diffuse<float>, .writes = kLightWrites};
+    test::check_kernel(test::test_plan(settings), light);
+    test::check_kernel(greys(settings), light, awkward);
+  }
+}
+
+TEST_CASE("sample_hemisphere: SIMD against its twin, on the viewer's side") {
+  test::KernelCase test{.kernel = sample_hemisphere,
+                        .twin = reference::sample_hemisphere<float>,
+                        .writes = {{"l_x", 2e-6, 0}, {"l_y", 2e-6, 0}, {"l_z", 2e-6, 0}, {"l_pdf", 0, 1e-7}}};
+  test.step = {.bounce = 2, .light = 0, .light_sample = 1};
+  test::check_kernel(greys(), test);
+  test::check_kernel(greys(), test, awkward);
+
+  const Plan plan = greys();
+  constexpr uint32_t kPaths = 1 << 14;
+  PathBuffer paths(kPaths);
+  test::fill_alike(paths, kPaths, 0.3);
+  sample_hemisphere(plan, paths.state(), {0, kPaths});
+  // The cosine is uniform: mean 1/2, mean square 1/3.
+  double mean = 0, square = 0;
+  for (uint32_t i = 0; i < kPaths; ++i) {
+    const double z = paths.state().l_z[i];
+    CHECK_UNARY(z > 0);
+    mean += z / kPaths;
+    square += z * z / kPaths;
+  }
+  CHECK(mean == doctest::Approx(0.5).epsilon(0.02));
+  CHECK(square == doctest::Approx(1.0 / 3).epsilon(0.03));
+}
+
+TEST_CASE("shade_diffuse: directions follow cos / pi, and pdf says so") {
+  const Plan plan = greys();
+  constexpr uint32_t kPaths = 1 << 16, kRings = 8, kSectors = 16;
+  PathBuffer paths(kPaths);
+  test::fill_alike(paths, kPaths, 0.3);
+  const PathState& s = paths.state();
+  shade_diffuse(plan, s, {0, kPaths});
+  std::vector<double> counts(kRings * kSectors), expected(kRings * kSectors, double(kPaths) / (kRings * kSectors));
+  double worst = 0;
+  for (uint32_t i = 0; i < kPaths; ++i) {
+    worst = std::max(worst, std::abs(s.pdf[i] * std::numbers::pi - s.d_z[i]));
+    // cos^2 and the azimuth are uniform.
+    const double turn = std::atan2(s.d_y[i], s.d_x[i]) / (2 * std::numbers::pi) + 0.5;
+    const auto ring = std::min(kRings - 1, static_cast<uint32_t>(s.d_z[i] * s.d_z[i] * kRings));
+    counts[ring * kSectors + std::min(kSectors - 1, static_cast<uint32_t>(turn * kSectors))] += 1;
+  }
+  CHECK(worst < 3e-7);
+  CHECK(std::abs(test::chi_square_excess(counts, expected)) < 4);
+}
+
+TEST_CASE("light_diffuse: MIS weights of both strategies sum to one") {
+  // With f cos = albedo pdf, the light's estimate over albedo radiance is pdf / (n l_pdf) times its weight.
+  Settings settings;
+  settings.light_samples = 4;
+  const Plan plan = test::material_plan({test::grey(1)}, settings);
+  for (const double l_pdf : {1e-3, 0.1, 3.0, 1e4}) {
+    Path<double> p;
+    p.d_z = -1, p.s_z = 1, p.l_z = 2, p.l_x = 1;
+    p.beta_r = 1, p.l_pdf = l_pdf;
+    reference::light_diffuse(plan, p);
+    const double pdf = 2 / std::sqrt(5.0) * std::numbers::inv_pi, n_pdf = 4 * l_pdf;
+    const double bsdf_weight = pdf * pdf / (pdf * pdf + n_pdf * n_pdf);
+    CHECK(p.c_r / 20 / pdf * n_pdf + bsdf_weight == doctest::Approx(1));
+  }
+}
+
+}  // namespace lanewise

@@ -1,0 +1,13 @@
+// The commands of the program: each adds itself to the parser and runs from within its parse.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace lanewise {
+
+// command_line: as typed, to be kept with what a render writes.
+void add_render_command(CLI::App& app, const std::string& command_line);
+void add_compare_command(CLI::App& app);
+
+}  // namespace lanewise

@@ -1,0 +1,101 @@
+#include "tools/flags.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace lanewise {
+namespace {
+
+template <class T>
+bool parse(const std::string& text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+// A validator without a description of its own: --help shows the flag's type name instead.
+CLI::Validator validator(std::function<std::string(const std::string&)> complaint) {
+  return CLI::Validator([complaint = std::move(complaint)](std::string& text) { return complaint(text); }, "");
+}
+
+}  // namespace
+
+CLI::Validator whole_number(uint64_t lo, uint64_t hi, uint64_t step) {
+  return validator([=](const std::string& text) {
+    uint64_t value = 0;
+    if (parse(text, value) && value >= lo && value <= hi && value % step == 0) return std::string();
+    return "'" + text + "' is not a " + (step == 1 ? "whole number" : "multiple of " + std::to_string(step)) +
+           " from " + std::to_string(lo) + " to " + std::to_string(hi);
+  });
+}
+
+CLI::Validator real_number(double lo, double hi) {
+  return validator([=](const std::string& text) {
+    double value = 0;
+    if (parse(text, value) && std::isfinite(value) && (lo == 0 ? value > 0 : value >= lo) && value <= hi) {
+      return std::string();
+    }
+    std::ostringstream complaint;
+    complaint << "'" << text << "' is not a number ";
+    if (lo == 0) {
+      complaint << "above 0 and up to " << hi;
+    } else {
+      complaint << "from " << lo << " to " << hi;
+    }
+    return complaint.str();
+  });
+}
+
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  return validator([names](const std::string& text) {
+    if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();
+    return "'" + text + "' is none of " + join_names(names);
+  });
+}
+
+std::string join_names(const std::vector<std::string>& names) {
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : "|") + name;
+  return joined;
+}
+
+HelpFormatter::HelpFormatter() {
+  column_width(38);
+  label("Positionals", "Arguments");
+  label("SUBCOMMAND", "COMMAND");
+}
+
+std::string HelpFormatter::make_group(std::string group, bool is_positional,
+                                      std::vector<const CLI::Option*> options) const {
+  const std::string text = CLI::Formatter::make_group(group, is_positional, options);
+  // A blank line already follows every group of flags but the last.
+  return is_positional || group == "Options" ? text : text.substr(1);
+}
+
+std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
+  return option->get_type_size() == 0 ? "" : " " + option->get_type_name();
+}
+
+std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
+  const std::string initial = option->get_default_str();
+  return option->get_description() + (initial.empty() ? "" : " [" + initial + "]");
+}
+
+std::string quoted_command_line(int argc, const char* const* argv) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
+  std::string line = "lanewise";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) {
+      line.append(" ").append(argument);
+      continue;
+    }
+    line += " '";
+    for (const char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += "'";
+  }
+  return line;
+}
+
+}  // namespace lanewise

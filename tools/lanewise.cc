@@ -1,0 +1,77 @@
+// The program: finds the command, and turns every failure into one line and an exit code: 1 for files and the machine,
+// 2 for the command line.
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "core/types.h"
+#include "tools/commands.h"
+#include "tools/flags.h"
+#include "tools/version.h"
+
+namespace lanewise {
+namespace {
+
+bool has_command(CLI::App& app, const std::string& name) {
+  return !app.get_subcommands([&](CLI::App* command) { return command->get_name() == name; }).empty();
+}
+
+void run(int argc, char** argv) {
+  CLI::App app("Lanewise, a wavefront path tracer for the CPU", "lanewise");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h,--help", "Print this help");
+  app.set_version_flag("-V,--version", std::string("lanewise ") + kVersion, "Print the version");
+  app.require_subcommand(0, 1);
+  app.footer("lanewise COMMAND --help tells more.");
+  add_render_command(app, quoted_command_line(argc, argv));
+  add_compare_command(app);
+
+  if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {
+    throw UsageError("'" + std::string(argv[1]) + "' is not a command; see lanewise --help");
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    app.exit(help_or_version);
+  } catch (const CLI::ArgumentMismatch& e) {
+    const std::string text = e.what();  // begins with the flag
+    throw UsageError(text.substr(0, text.find(':')) + ": a value is missing; see --help");
+  } catch (const CLI::ParseError& e) {
+    throw UsageError(e.what());
+  }
+  if (argc == 1) std::cout << app.help();
+  if (!std::cout.flush()) throw Error("standard output: cannot write");
+}
+
+// Always one line: file names may hold anything.
+int complain(std::string text, int exit_code) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  std::cerr << "lanewise: " << text << std::endl;
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace lanewise
+
+int main(int argc, char** argv) {
+  using lanewise::complain;
+  // A file that outgrows its limit is then an error of its write like any other.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    lanewise::run(argc, argv);
+    return 0;
+  } catch (const lanewise::UsageError& e) {
+    return complain(e.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory", 1);
+  } catch (const std::exception& e) {
+    return complain(e.what(), 1);
+  } catch (...) {
+    return complain("unknown error", 1);
+  }
+}

@@ -1,0 +1,152 @@
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "core/file.h"
+#include "core/image_io.h"
+#include "core/plan.h"
+#include "core/render.h"
+#include "core/scene.h"
+#include "core/types.h"
+#include "scenes/load.h"
+#include "tools/commands.h"
+#include "tools/flags.h"
+#include "tools/progress.h"
+#include "tools/render_options.h"
+#include "tools/render_report.h"
+#include "tools/version.h"
+
+namespace lanewise {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  lanewise render box.dae                                  a quick look, to box.png\n"
+    "  lanewise render box.dae -s 1024 -f box.exr               a clean picture, in floats\n"
+    "  lanewise render box.dae -r 1920 1080 -a 64 0.02 -s 4096  samples where the noise is\n"
+    "  lanewise render box.dae --metal gold --alpha 0.05        another material";
+
+// Seconds that f takes, added to `seconds`.
+template <class F>
+auto timed(double& seconds, F f) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = f();
+  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+// What can be known to fail before the work begins.
+void check_outputs(const RenderOptions& o) {
+  check_image_extension(o.output);
+  check_image_writable(o.output);
+  if (o.stats.empty()) return;
+  check_writable(o.stats);
+  for (const std::string& other : {o.scene, o.output}) {
+    if (std::filesystem::weakly_canonical(o.stats) == std::filesystem::weakly_canonical(other)) {
+      throw UsageError("--stats: would overwrite " + other);
+    }
+  }
+}
+
+template <class F>
+void change_materials(Scene& scene, Material::Kind kind, const char* flag, const char* what, F change) {
+  bool any = false;
+  for (Material& material : scene.materials) {
+    if (material.kind != kind) continue;
+    change(material);
+    any = true;
+  }
+  if (!any) throw UsageError(std::string(flag) + ": " + scene.path + " has no " + what);
+}
+
+void apply_overrides(Scene& scene, const RenderOptions& o) {
+  constexpr auto kMicrofacet = Material::Kind::kMicrofacet;
+  if (o.metal) {
+    change_materials(scene, kMicrofacet, "--metal", "microfacet material", [&](Material& m) {
+      m.eta = o.metal->eta;
+      m.k = o.metal->k;
+    });
+  }
+  if (o.alpha) {
+    change_materials(scene, kMicrofacet, "--alpha", "microfacet material", [&](Material& m) { m.alpha = *o.alpha; });
+  }
+  if (o.ior) change_materials(scene, Material::Kind::kGlass, "--ior", "glass", [&](Material& m) { m.ior = *o.ior; });
+  apply_normals(scene, o.normals);
+}
+
+RenderResult render_with(Reference reference, const Plan& plan, const std::function<void(const Progress&)>& progress) {
+  switch (reference) {
+    case Reference::kFloat:
+      return render_reference<float>(plan, progress);
+    case Reference::kDouble:
+      return render_reference<double>(plan, progress);
+    case Reference::kNone:
+      break;
+  }
+  return render(plan, progress);
+}
+
+std::string isa_name(Reference reference) {
+  switch (reference) {
+    case Reference::kFloat:
+      return "reference-float";
+    case Reference::kDouble:
+      return "reference-double";
+    case Reference::kNone:
+      break;
+  }
+  return chosen_isa();
+}
+
+void run_render(const RenderOptions& o, const std::string& command_line) {
+  check_outputs(o);
+  choose_isa(o.isa);
+
+  RenderSeconds seconds;
+  ProgressLine progress(o.quiet);
+  progress.show("loading " + o.scene);
+  Scene scene = timed(seconds.load, [&] { return load_scene(o.scene); });
+  apply_overrides(scene, o);
+  progress.show("planning");
+  const Plan plan = timed(seconds.plan, [&] { return make_plan(scene, o.settings); });
+  const RenderResult result = timed(
+      seconds.render, [&] { return render_with(o.reference, plan, [&](const Progress& p) { progress.show(p); }); });
+
+  timed(seconds.write, [&] {
+    write_image(o.output, result.image,
+                {{"software", std::string("lanewise ") + kVersion},
+                 {"command", command_line},
+                 {"scene", o.scene},
+                 {"spp", std::to_string(o.settings.spp)},
+                 {"seed", std::to_string(o.settings.seed)}});
+    return true;
+  });
+  const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line};
+  if (!o.stats.empty()) write_file(o.stats, stats_json(report));
+
+  progress.clear();
+  if (result.stats.invalid_samples > 0) {
+    std::cerr << "lanewise: warning: " << result.stats.invalid_samples
+              << " samples were NaN, infinite or negative and count as black\n";
+  }
+  if (o.quiet) return;
+  for (const std::string& notice : scene.notices) std::cout << "note: " << notice << "\n";
+  std::cout << summary(report);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand("render", "Render a scene to a picture");
+  command->group("Commands");
+  command->footer(kExamples);
+  const auto options = std::make_shared<RenderOptions>();
+  add_render_options(*command, *options);
+  command->callback([=] {
+    complete(*options, *command);
+    run_render(*options, command_line);
+  });
+}
+
+}  // namespace lanewise

@@ -1,0 +1,182 @@
+#include "tools/render_options.h"
+
+#include <filesystem>
+#include <limits>
+
+#include "core/dimensions.h"
+#include "core/types.h"
+#include "tools/flags.h"
+
+namespace lanewise {
+namespace {
+
+constexpr uint64_t kMaxCount = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t kMaxSide = 65536;
+constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
+
+// Flags of the course's path tracer that are understood, so that its command lines fail with a reason.
+constexpr struct {
+  const char* flag;
+  const char* values;
+  int count;
+  const char* help;
+} kNotYet[] = {
+    {"-e,--environment", "FILE", 1, "Environment map"},
+    {"-b,--lens-radius", "R", 1, "Radius of a thin lens"},
+    {"-d,--focal-distance", "D", 1, "Distance that the lens focuses on"},
+    {"-p,--crop", "X Y DX DY", 4, "Render this part of the picture"},
+    {"-c,--camera-file", "FILE", 1, "Camera in place of the scene's"},
+};
+
+void add_picture_flags(CLI::App& app, RenderOptions& o) {
+  app.add_option("-r,--resolution", o.resolution, "Width and height of the picture")
+      ->check(whole_number(1, kMaxSide))
+      ->type_name("W H")
+      ->default_str(std::to_string(o.resolution.first) + " " + std::to_string(o.resolution.second));
+  add_choice<View>(app, "--view", o.settings.view, {{"file", View::kFile}, {"fit", View::kFit}},
+                   "The file's camera, or one that frames the whole scene");
+  add_choice<Normals>(app, "--normals", o.normals,
+                      {{"file", Normals::kFile}, {"smooth", Normals::kSmooth}, {"flat", Normals::kFlat}},
+                      "Shading normals: the file's, interpolated, or the faces' own");
+}
+
+void add_sampling_flags(CLI::App& app, RenderOptions& o) {
+  app.add_option("-s,--spp", o.settings.spp, "Camera samples per pixel")
+      ->check(whole_number(1, kMaxCount))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("-l,--light-samples", o.settings.light_samples, "Samples per light at every vertex")
+      ->check(whole_number(1, kSetsPerBounce - kSetLight))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("-a,--adaptive", o.adaptive,
+                 "Stop a pixel whose mean is known to within the share TOL (95%); look after every BATCH samples")
+      ->check(whole_number(1, kMaxCount).application_index(0))
+      ->check(real_number(0, 10).application_index(1))
+      ->type_name("BATCH TOL");
+  app.add_option("--seed", o.settings.seed, "Seed of the random numbers")
+      ->check(whole_number(0, std::numeric_limits<uint64_t>::max()))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_transport_flags(CLI::App& app, RenderOptions& o) {
+  app.add_option("-m,--max-depth", o.settings.max_depth, "Most scattering events on a path; 0: the lights alone")
+      ->check(whole_number(0, kSetsPerBounce - 1))
+      ->type_name("N")
+      ->capture_default_str();
+  add_choice<Direct>(
+      app, "--direct", o.settings.direct,
+      {{"mis", Direct::kMis}, {"light", Direct::kLight}, {"bsdf", Direct::kBsdf}, {"hemisphere", Direct::kHemisphere}},
+      "How direct light is sampled");
+  app.add_flag("-H,--hemisphere", o.hemisphere, "Short for --direct hemisphere");
+  add_choice<BsdfSampling>(
+      app, "--bsdf-sampling", o.settings.bsdf_sampling,
+      {{"vndf", BsdfSampling::kVndf}, {"ndf", BsdfSampling::kNdf}, {"cosine", BsdfSampling::kCosine}},
+      "How microfacets choose a direction");
+  add_choice<Fresnel>(app, "--fresnel", o.settings.fresnel,
+                      {{"exact", Fresnel::kExact}, {"schlick", Fresnel::kSchlick}, {"course", Fresnel::kCourse}},
+                      "Formulas for reflectance");
+}
+
+void add_material_flags(CLI::App& app, RenderOptions& o) {
+  std::vector<std::string> symbols;
+  for (const Metal& metal : metals()) symbols.push_back(metal.names.front());
+  app.add_option_function<std::string>(
+         "--metal", [&o](const std::string& name) { o.metal = find_metal(name); },
+         "Metal of all microfacet materials: " + join_names(symbols) + ", or its name in full")
+      ->check(CLI::Validator(
+          [symbols](std::string& name) {
+            return find_metal(name) ? "" : "'" + name + "' is none of " + join_names(symbols);
+          },
+          ""))
+      ->type_name("NAME");
+  app.add_option("--alpha", o.alpha, "Roughness of all microfacet materials")
+      ->check(real_number(0, 10))
+      ->type_name("X");
+  app.add_option("--ior", o.ior, "Index of refraction of all glass")->check(real_number(0.01, 100))->type_name("X");
+}
+
+void add_machine_flags(CLI::App& app, RenderOptions& o) {
+  app.add_option("-t,--threads", o.settings.threads, "Threads; 0: all that the machine has")
+      ->check(whole_number(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--wave", o.settings.wave, "Paths in flight per thread, a multiple of 16")
+      ->check(whole_number(kLanes, 1 << 20, kLanes))
+      ->type_name("N")
+      ->capture_default_str();
+  const std::vector<std::string> isas = {"scalar", "sse4", "avx2", "avx512"};
+  app.add_option("--isa", o.isa, "Instruction set of the kernels")
+      ->check(one_of(isas))
+      ->type_name(join_names(isas))
+      ->default_str("the best here");
+  app.add_option_function<std::string>(
+         "--reference",
+         [&o](const std::string& type) { o.reference = type == "float" ? Reference::kFloat : Reference::kDouble; },
+         "Render with the scalar path tracer that the kernels are tested against")
+      ->check(one_of({"float", "double"}))
+      ->type_name("float|double");
+}
+
+void add_output_flags(CLI::App& app, RenderOptions& o) {
+  app.add_option("-f,--output", o.output, "The picture: .png, .exr, .pfm or .hdr")
+      ->type_name("FILE")
+      ->default_str("the scene's name.png, here");
+  app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
+  app.add_flag("-q,--quiet", o.quiet, "No progress, no summary");
+}
+
+void add_not_yet_flags(CLI::App& app) {
+  for (const auto& [flag, values, count, help] : kNotYet) {
+    const std::string name = std::string(flag).substr(std::string_view(flag).find("--"));
+    app.add_option_function<std::vector<std::string>>(
+           flag, [name](const std::vector<std::string>&) { throw UsageError(name + ": not yet supported"); }, help)
+        ->expected(count)
+        ->type_name(values);
+  }
+}
+
+std::string default_output(const std::string& scene) {
+  const size_t colon = scene.starts_with("builtin:") ? scene.find(':') + 1 : 0;
+  return std::filesystem::path(scene.substr(colon)).stem().string() + ".png";
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& app, RenderOptions& o) {
+  app.option_defaults()->take_last();  // so that a flag can be appended to a command line to change it
+  app.add_option("SCENE", o.scene, "COLLADA file (.dae), or a scene made by code: builtin:dense")
+      ->required()
+      ->type_name("");
+  const auto group = [&app](const char* name) { app.option_defaults()->group(name); };
+  group("Picture");
+  add_picture_flags(app, o);
+  group("Sampling");
+  add_sampling_flags(app, o);
+  group("Transport");
+  add_transport_flags(app, o);
+  group("Materials");
+  add_material_flags(app, o);
+  group("Machine");
+  add_machine_flags(app, o);
+  group("Output");
+  add_output_flags(app, o);
+  group("Not yet supported");
+  add_not_yet_flags(app);
+}
+
+void complete(RenderOptions& o, const CLI::App& app) {
+  if (o.hemisphere && app.count("--direct") > 0 && o.settings.direct != Direct::kHemisphere) {
+    throw UsageError("--hemisphere (-H) contradicts --direct");
+  }
+  if (o.hemisphere) o.settings.direct = Direct::kHemisphere;
+  if (uint64_t{o.resolution.first} * o.resolution.second > kMaxPixels) {
+    throw UsageError("--resolution: more than 2^28 pixels");
+  }
+  std::tie(o.settings.width, o.settings.height) = o.resolution;
+  std::tie(o.settings.adaptive_batch, o.settings.adaptive_tolerance) = o.adaptive;
+  if (o.output.empty()) o.output = default_output(o.scene);
+}
+
+}  // namespace lanewise

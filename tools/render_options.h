@@ -1,0 +1,42 @@
+// The flags of `lanewise render`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/scene.h"
+#include "core/settings.h"
+#include "tools/metals.h"
+
+namespace lanewise {
+
+enum class Reference { kNone, kFloat, kDouble };  // the scalar path tracer in place of the kernels
+
+struct RenderOptions {
+  std::string scene;
+  std::string output;  // the picture's file; complete() fills it in
+  std::string stats;   // the statistics' file; empty: none
+  Settings settings;
+  Normals normals = Normals::kFile;
+  std::string isa;  // empty: the best here
+  Reference reference = Reference::kNone;
+  const Metal* metal = nullptr;  // overrides: null or empty leaves the scene's materials alone
+  std::optional<double> alpha;
+  std::optional<double> ior;
+  bool quiet = false;
+
+  // As the parser needs them; complete() moves them into the settings.
+  std::pair<uint32_t, uint32_t> resolution{settings.width, settings.height};
+  std::pair<uint32_t, double> adaptive{settings.adaptive_batch, settings.adaptive_tolerance};
+  bool hemisphere = false;
+};
+
+// Adds every flag, and checks of each value by itself. Values go to `options`, which must live until the parse.
+void add_render_options(CLI::App& app, RenderOptions& options);
+
+// After the parse: what depends on several flags. Throws UsageError.
+void complete(RenderOptions& options, const CLI::App& app);
+
+}  // namespace lanewise

@@ -1,0 +1,105 @@
+#include "tools/render_report.h"
+
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tools/version.h"
+
+namespace lanewise {
+namespace {
+
+uint64_t total_rays(const RenderStats& s) { return s.camera_rays + s.bounce_rays + s.shadow_rays; }
+
+double rays_per_second(const RenderReport& r) {
+  return r.seconds.render > 0 ? static_cast<double>(total_rays(r.stats)) / r.seconds.render : 0;
+}
+
+uint64_t peak_rss_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// "842", "12.3 k", "4.56 M".
+std::string short_count(double n) {
+  const char* unit = "";
+  for (const char* larger : {" k", " M", " G", " T"}) {
+    if (n < 999.5) break;
+    n /= 1000;
+    unit = larger;
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g%s", n, unit);
+  return text;
+}
+
+std::string short_seconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, seconds < 10 ? "%.2f s" : "%.1f s", seconds);
+  return text;
+}
+
+std::string count_of(uint64_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
+}  // namespace
+
+std::string stats_json(const RenderReport& r) {
+  const Settings& settings = r.options.settings;
+  const RenderStats& s = r.stats;
+  nlohmann::ordered_json json = {
+      {"scene", r.options.scene},
+      {"command", r.command_line},
+      {"version", kVersion},
+      {"width", settings.width},
+      {"height", settings.height},
+      {"spp", settings.spp},
+      {"max_depth", settings.max_depth},
+      {"seed", settings.seed},
+      {"threads", s.threads},
+      {"isa", r.isa},
+      {"wave", settings.wave},
+      {"seconds",
+       {{"load", r.seconds.load}, {"plan", r.seconds.plan}, {"render", r.seconds.render}, {"write", r.seconds.write}}},
+      {"samples", s.samples},
+      {"rays",
+       {{"camera", s.camera_rays}, {"bounce", s.bounce_rays}, {"shadow", s.shadow_rays}, {"total", total_rays(s)}}},
+      {"rays_per_second", rays_per_second(r)},
+      {"peak_rss_bytes", peak_rss_bytes()},
+      {"invalid_samples", s.invalid_samples},
+      {"paths_by_length", s.paths_by_length},
+  };
+  json["stages"] = nlohmann::ordered_json::array();
+  for (const StageStats& stage : s.stages) {
+    json["stages"].push_back({{"name", stage.name},
+                              {"calls", stage.calls},
+                              {"paths", stage.paths},
+                              {"seconds", stage.seconds},
+                              {"lanes_live", stage.lanes_live}});
+  }
+  // File names may hold any bytes; what is not UTF-8 is replaced.
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string summary(const RenderReport& r) {
+  const Settings& settings = r.options.settings;
+  const RenderStats& s = r.stats;
+  const uint64_t pixels = uint64_t{settings.width} * settings.height;
+  std::string text = r.options.scene + " -> " + r.options.output + "\n";
+  text += std::to_string(settings.width) + " x " + std::to_string(settings.height) + ", ";
+  if (settings.adaptive_batch > 0) {
+    char mean[32];
+    std::snprintf(mean, sizeof mean, "%.1f", static_cast<double>(s.samples) / static_cast<double>(pixels));
+    text += std::string(mean) + " of at most ";
+  }
+  text += count_of(settings.spp, "sample") + " per pixel, depth " + std::to_string(settings.max_depth) + ", " +
+          count_of(s.threads, "thread") + ", " + r.isa + "\n";
+  text += "load " + short_seconds(r.seconds.load) + ", plan " + short_seconds(r.seconds.plan) + ", render " +
+          short_seconds(r.seconds.render) + ", write " + short_seconds(r.seconds.write) + "\n";
+  text += short_count(static_cast<double>(s.samples)) + " samples, " + short_count(static_cast<double>(total_rays(s))) +
+          " rays, " + short_count(rays_per_second(r)) + " rays/s\n";
+  return text;
+}
+
+}  // namespace lanewise

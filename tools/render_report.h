@@ -1,0 +1,34 @@
+// What `lanewise render` tells about a finished render.
+#pragma once
+
+#include <string>
+
+#include "core/render.h"
+#include "tools/render_options.h"
+
+namespace lanewise {
+
+struct RenderSeconds {
+  double load = 0;
+  double plan = 0;
+  double render = 0;
+  double write = 0;
+};
+
+struct RenderReport {
+  const RenderOptions& options;
+  const RenderStats& stats;
+  RenderSeconds seconds;
+  std::string isa;
+  std::string command_line;
+};
+
+// For --stats: scene, command, version, width, height, spp, max_depth, seed, threads, isa, wave, seconds {load, plan,
+// render, write}, samples, rays {camera, bounce, shadow, total}, rays_per_second, peak_rss_bytes, invalid_samples,
+// paths_by_length [] and stages [{name, calls, paths, seconds, lanes_live}].
+std::string stats_json(const RenderReport& report);
+
+// For the terminal: a few lines.
+std::string summary(const RenderReport& report);
+
+}  // namespace lanewise
