@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <numbers>
+#include <span>
 
+#include "core/plan_flat.h"
 #include "core/plan_lights.h"
 #include "core/ray_offset.h"
 #include "core/scene.h"
@@ -61,6 +62,7 @@ class Planner {
     choose_flat_meshes();
     add_triangles();
     add_spheres();
+    find_blocking_faces(plan_, corners_, spheres_);
     build_trees();
     choose_stages();
     return std::move(plan_);
@@ -128,9 +130,19 @@ class Planner {
     for (size_t m = 0; m < scene_.meshes.size(); ++m) {
       const Mesh& mesh = scene_.meshes[m];
       const uint32_t first = plan_.triangles;
-      for (size_t t = 0; t < mesh.triangles.size(); ++t) any_smooth |= add_triangle(mesh, t, is_flat_mesh_[m]);
+      bool smooth = false;
+      for (size_t t = 0; t < mesh.triangles.size(); ++t) smooth |= add_triangle(mesh, t);
+      any_smooth |= smooth;
+      const std::span<const FlatTriangle> added = std::span(corners_).subspan(first);
+      if (!is_flat_mesh_[m]) {
+        tree_triangles_.insert(tree_triangles_.end(), added.begin(), added.end());
+      } else if (smooth) {
+        plan_.flat_triangles.insert(plan_.flat_triangles.end(), added.begin(), added.end());
+      } else {
+        add_flat_mesh(plan_, added);
+      }
       if (scene_.materials[mesh.material].kind == Material::Kind::kEmission) {
-        add_mesh_light(plan_, std::span(corners_).subspan(first), scene_.materials[mesh.material].radiance);
+        add_mesh_light(plan_, added, scene_.materials[mesh.material].radiance);
         std::fill(plan_.prim_light.begin() + first, plan_.prim_light.end(),
                   static_cast<uint32_t>(plan_.lights.size() - 1));
       }
@@ -142,7 +154,7 @@ class Planner {
   }
 
   // Returns whether its shading normals differ from its face's.
-  bool add_triangle(const Mesh& mesh, size_t index, bool flat) {
+  bool add_triangle(const Mesh& mesh, size_t index) {
     FlatTriangle corners{};
     dvec3 v[3];
     for (int k = 0; k < 3; ++k) {
@@ -152,7 +164,6 @@ class Planner {
     const dvec3 n = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
     corners.prim = plan_.triangles++;
     corners_.push_back(corners);
-    (flat ? plan_.flat_triangles : tree_triangles_).push_back(corners);
     add_primitive(n, glm::dot(n, (v[0] + v[1] + v[2]) / 3.0), triangle_offset(corners.v), mesh.material);
 
     bool smooth = false;
@@ -214,8 +225,10 @@ class Planner {
         for (int axis = 0; axis < 3; ++axis) block.v[corner][axis][lane] = t.v[corner][axis];
       }
     }
-    say(std::to_string(plan_.flat_triangles.size()) + " triangles in a flat list, tested by whole vectors of rays; " +
-        std::to_string(tree_triangles_.size()) + " in an 8-wide tree");
+    say("flat lists, tested by whole vectors of rays: " + std::to_string(plan_.flat_quads.size()) +
+        " parallelograms (" + std::to_string(plan_.blocking_quads) + " of them can block light), " +
+        std::to_string(plan_.flat_triangles.size()) + " triangles (" + std::to_string(plan_.blocking_triangles) + ")");
+    say(std::to_string(tree_triangles_.size()) + " triangles in an 8-wide tree");
     build_sphere_tree();
   }
 

@@ -86,6 +86,21 @@ struct FlatSphere {
   uint32_t prim;
 };
 
+// A parallelogram outside the trees. A point q of its plane is on it where |a.q + a_0| <= 1 + a_margin and the same for b.
+// The margins, some rounding errors wide, make quads that share an edge overlap there rather than leave a gap between them;
+// the picture sees quads that are larger by some millionths of the scene.
+struct FlatQuad {
+  float n[3];  // unit normal
+  float distance;  // n.p of its points
+  float a[3];
+  float a_0;
+  float b[3];
+  float b_0;
+  float a_margin;
+  float b_margin;
+  uint32_t prim;  // the first of its two triangles; the second's index is not used
+};
+
 // kLeafWidth triangles or spheres side by side, tested by one ray. Short blocks hold prim kNoPrim and zeros.
 struct alignas(16) TriangleBlock {
   float v[3][3][kLeafWidth];  // vertex, axis, lane
@@ -137,8 +152,12 @@ struct Plan {
   std::vector<PlanLight> lights;
   AlignedVector<float> light_table;  // 4 a light, to gather by light: radiance, area
 
-  // Where rays look for them: every primitive is in exactly one of these four.
+  // Where rays look for them: every primitive is in exactly one of these five. Of quads and triangles the first are those
+  // that can block light between two points of the scene: one with all geometry on one side of its plane cannot.
+  std::vector<FlatQuad> flat_quads;
   std::vector<FlatTriangle> flat_triangles;
+  uint32_t blocking_quads = 0;
+  uint32_t blocking_triangles = 0;
   std::vector<FlatSphere> flat_spheres;
   Bvh triangle_tree;
   AlignedVector<TriangleBlock> triangle_blocks;

@@ -10,6 +10,7 @@
 
 #include "core/plan.h"
 #include "kernels/leaf-inl.h"
+#include "kernels/quad-inl.h"
 #include "kernels/simd-inl.h"
 #include "kernels/sphere-inl.h"
 #include "kernels/traverse-inl.h"
@@ -28,6 +29,15 @@ struct Hits {
 struct Nearest {
   VF t, v, w, det;
   VI prim;
+
+  // A hit without barycentric weights takes the place of the best one where `nearer` says so.
+  HWY_INLINE void Take(MF nearer, VF hit_t, VI hit_prim) {
+    t = hn::IfThenElse(nearer, hit_t, t);
+    v = hn::IfThenZeroElse(nearer, v);
+    w = hn::IfThenZeroElse(nearer, w);
+    det = hn::IfThenElse(nearer, Splat(1.0f), det);
+    prim = hn::IfThenElse(hn::RebindMask(DI(), nearer), hit_prim, prim);
+  }
 };
 
 // The same in memory, for rays that walk a tree one by one.
@@ -56,8 +66,19 @@ HWY_INLINE hn::Mask<D> Before(D d, V t, VInt prim, V best_t, VInt best_prim) {
   return hn::Or(hn::Lt(t, best_t), hn::And(hn::Eq(t, best_t), lower));
 }
 
-HWY_INLINE void NearestFlatTriangle(const Plan& plan, const Vec3& o, const Shear& shear, MF alive, Nearest& best) {
+HWY_INLINE void NearestFlatQuad(const Plan& plan, const Vec3& o, const Vec3& dir, Nearest& best) {
+  for (const FlatQuad& quad : plan.flat_quads) {
+    VF t;
+    const MF met = TestQuad(quad, o, dir, t);
+    const VI prim = hn::Set(DI(), static_cast<int32_t>(quad.prim));
+    best.Take(hn::And(met, Before(DF(), t, prim, best.t, best.prim)), t, prim);
+  }
+}
+
+HWY_INLINE void NearestFlatTriangle(const Plan& plan, const Vec3& o, const Vec3& dir, MF alive, Nearest& best) {
   const DF d;
+  if (plan.flat_triangles.empty()) return;
+  const Shear shear = MakeShear(dir);
   for (const FlatTriangle& triangle : plan.flat_triangles) {
     const TriangleTest<DF> test = TestTriangle(triangle, o, shear, alive);
     const VF t = hn::Div(test.depth, test.det);
@@ -80,12 +101,7 @@ HWY_INLINE void NearestFlatSphere(const Plan& plan, const Vec3& o, const Vec3& d
     const VF f[3] = {to.x, to.y, to.z};
     const VF t = SphereRoot(d, f, slope, a, inv_a, Splat(sphere.radius));
     const VI prim = hn::Set(DI(), static_cast<int32_t>(sphere.prim));
-    const MF hit = Before(d, t, prim, best.t, best.prim);
-    best.t = hn::IfThenElse(hit, t, best.t);
-    best.v = hn::IfThenZeroElse(hit, best.v);
-    best.w = hn::IfThenZeroElse(hit, best.w);
-    best.det = hn::IfThenElse(hit, Splat(1.0f), best.det);
-    best.prim = hn::IfThenElse(hn::RebindMask(DI(), hit), prim, best.prim);
+    best.Take(Before(d, t, prim, best.t, best.prim), t, prim);
   }
 }
 
@@ -151,11 +167,10 @@ inline HWY_NOINLINE void WalkSpheres(const Plan& plan, const SlabRays& slabs, co
 }
 
 // The trees, for the rays that meet their bounds nearer than the best hit so far.
-HWY_INLINE void NearestInTrees(const Plan& plan, const Vec3& o, const Vec3& dir, const Shear& shear, MF alive,
-                               Nearest& best) {
+HWY_INLINE void NearestInTrees(const Plan& plan, const Vec3& o, const Vec3& dir, MF alive, Nearest& best) {
   const DF d;
   RayLanes rays;
-  rays.Store(o, dir, shear);
+  rays.Store(o, dir, MakeShear(dir));
   NearestLanes lanes;
   lanes.Store(best);
   SlabRays slabs;
@@ -179,11 +194,10 @@ HWY_INLINE Hits ClosestHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF 
   const VF zero = hn::Zero(d);
   // A dead lane's limit of 0 lets no hit pass.
   Nearest best{hn::IfThenElseZero(alive, Splat(kInfinity)), zero, zero, Splat(1.0f), hn::Set(DI(), kNoHit)};
-  const Shear shear = MakeShear(dir);
-  NearestFlatTriangle(plan, o, shear, alive, best);
+  NearestFlatQuad(plan, o, dir, best);
+  NearestFlatTriangle(plan, o, dir, alive, best);
   NearestFlatSphere(plan, o, dir, best);
-  if (!plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty())
-    NearestInTrees(plan, o, dir, shear, alive, best);
+  if (!plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty()) NearestInTrees(plan, o, dir, alive, best);
   const MF none = hn::RebindMask(d, hn::Eq(best.prim, hn::Set(DI(), kNoHit)));
   return {hn::IfThenElse(none, Splat(kInfinity), best.t), hn::Div(best.v, best.det), hn::Div(best.w, best.det),
           best.prim};

@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
 #include "kernels/leaf-inl.h"
+#include "kernels/quad-inl.h"
 #include "kernels/simd-inl.h"
 #include "kernels/sphere-inl.h"
 #include "kernels/traverse-inl.h"
@@ -56,15 +57,22 @@ HWY_NOINLINE bool WalkSpheresAny(const Plan& plan, const SlabRays& slabs, const 
   return WalkUntil(plan.sphere_tree, slabs, lane, 1.0f, leaf);
 }
 
-// Which rays o + t dir meet a primitive with 0 < t < 1. Lanes out of `wanted` meet none.
+// Which rays o + t dir, between two points of the scene, meet a primitive with 0 < t < 1. Lanes out of `wanted` meet none.
 HWY_INLINE MF AnyHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted) {
   const DF d;
   const VF one = Splat(1.0f);
-  const Shear shear = MakeShear(dir);
   MF hit = hn::Lt(one, hn::Zero(d));
-  for (const FlatTriangle& triangle : plan.flat_triangles) {
-    const TriangleTest<DF> test = TestTriangle(triangle, o, shear, wanted);
-    hit = hn::Or(hit, hn::And(test.inside, WithinSegment(d, test.depth, test.det)));
+  for (uint32_t i = 0; i < plan.blocking_quads; ++i) {
+    VF t;
+    const MF met = TestQuad(plan.flat_quads[i], o, dir, t);
+    hit = hn::Or(hit, hn::And(met, hn::Lt(t, one)));
+  }
+  if (plan.blocking_triangles > 0) {
+    const Shear shear = MakeShear(dir);
+    for (uint32_t i = 0; i < plan.blocking_triangles; ++i) {
+      const TriangleTest<DF> test = TestTriangle(plan.flat_triangles[i], o, shear, wanted);
+      hit = hn::Or(hit, hn::And(test.inside, WithinSegment(d, test.depth, test.det)));
+    }
   }
   const VF a = Dot(dir, dir), inv_a = hn::Div(one, a);
   const VF slope[3] = {dir.x, dir.y, dir.z};
@@ -76,7 +84,7 @@ HWY_INLINE MF AnyHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted
   if (plan.triangle_tree.nodes.empty() && plan.sphere_tree.nodes.empty()) return hn::And(wanted, hit);
 
   RayLanes rays;
-  rays.Store(o, dir, shear);
+  rays.Store(o, dir, MakeShear(dir));
   SlabRays slabs;
   HWY_ALIGN float blocked[kLanes];
   hn::Store(hn::IfThenElseZero(hit, one), d, blocked);

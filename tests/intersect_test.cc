@@ -49,7 +49,9 @@ uint32_t missed(const std::vector<Path<float>>& paths) {
 bool borderline(const Plan& plan, const Path<float>& hit) {
   if (hit.prim == kNoPrim || hit.prim >= plan.triangles) return false;
   const glm::vec3 n = reference::vec3<float>(&plan.prim_shape[size_t{4} * hit.prim]);
-  return std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < 1e-5f || std::abs(glm::dot(n, LANEWISE_VEC3(hit, d))) < 1e-2f;
+  const bool on_quad = hit.u == 0 && hit.v == 0;  // quads have no barycentric weights
+  return (!on_quad && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < 1e-5f) ||
+         std::abs(glm::dot(n, LANEWISE_VEC3(hit, d))) < 1e-2f;
 }
 
 // Rays from within the mesh to points of its edges and to its vertices: as near to them as floats come.

@@ -17,6 +17,7 @@ TEST_CASE("plan: every primitive is in exactly one list or tree") {
   CHECK(plan.triangles == scene.triangle_count());
   CHECK(plan.spheres == 3);
   std::multiset<uint32_t> prims;
+  for (const FlatQuad& q : plan.flat_quads) prims.insert({q.prim, q.prim + 1});
   for (const FlatTriangle& t : plan.flat_triangles) prims.insert(t.prim);
   for (const FlatSphere& s : plan.flat_spheres) prims.insert(s.prim);
   for (const TriangleBlock& b : plan.triangle_blocks) prims.insert(b.prim, b.prim + kLeafWidth);
@@ -24,7 +25,8 @@ TEST_CASE("plan: every primitive is in exactly one list or tree") {
   CHECK(prims.size() == plan.triangles + plan.spheres);
   CHECK(std::set<uint32_t>(prims.begin(), prims.end()).size() == prims.size());
   CHECK(*prims.rbegin() == plan.triangles + plan.spheres - 1);
-  CHECK(plan.flat_triangles.size() == 13);  // the walls and lights
+  CHECK(plan.flat_quads.size() == 6);  // walls and ceiling light
+  CHECK(plan.flat_triangles.size() == 1);
   for (const uint32_t m : plan.prim_material) CHECK(m < plan.materials.size());
   for (const uint32_t l : plan.prim_light) CHECK(l < plan.lights.size());
 }

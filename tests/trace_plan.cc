@@ -98,6 +98,7 @@ Plan trace_plan(const std::vector<Triangle>& triangles, const std::vector<Ball>&
     plan.flat_triangles.clear();
     plan.flat_spheres.clear();
   }
+  plan.blocking_triangles = static_cast<uint32_t>(plan.flat_triangles.size());
   return plan;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/plan.h"
+#include "kernels/reference/quad.h"
 #include "kernels/reference/sphere.h"
 #include "kernels/reference/traverse.h"
 #include "kernels/reference/triangle.h"
@@ -39,6 +40,13 @@ Hit<T> hit_sphere(const Vec3<T>& center, T radius, uint32_t prim, const Vec3<T>&
   return {t, 0, 0, prim};
 }
 
+template <class T>
+Hit<T> hit_quad(const FlatQuad& quad, const Vec3<T>& o, const Vec3<T>& d) {
+  const T t = quad_root<T>(quad, o, d);
+  if (t == 0) return {};
+  return {t, 0, 0, quad.prim};
+}
+
 // Calls visit(hit) with what the ray meets in each triangle and sphere of a block.
 template <class T, class Visit>
 void hit_block(const TriangleBlock& block, const Vec3<T>& o, const Shear<T>& shear, const Visit& visit) {
@@ -59,10 +67,14 @@ void hit_block(const SphereBlock& block, const Vec3<T>& o, const Vec3<T>& d, con
   }
 }
 
+// The same for the first `quads` quads, the first `triangles` triangles and all spheres of the flat lists.
 template <class T, class Visit>
-void hit_flat(const Plan& plan, const Vec3<T>& o, const Vec3<T>& d, const Visit& visit) {
+void hit_flat(const Plan& plan, size_t quads, size_t triangles, const Vec3<T>& o, const Vec3<T>& d,
+              const Visit& visit) {
+  for (size_t i = 0; i < quads; ++i) visit(hit_quad<T>(plan.flat_quads[i], o, d));
   const Shear<T> shear = make_shear(d);
-  for (const FlatTriangle& f : plan.flat_triangles) {
+  for (size_t i = 0; i < triangles; ++i) {
+    const FlatTriangle& f = plan.flat_triangles[i];
     visit(hit_triangle<T>({vec3<T>(f.v[0]), vec3<T>(f.v[1]), vec3<T>(f.v[2])}, f.prim, o, shear));
   }
   for (const FlatSphere& f : plan.flat_spheres) visit(hit_sphere<T>(vec3<T>(f.center), T(f.radius), f.prim, o, d));
@@ -72,7 +84,7 @@ template <class T>
 Hit<T> closest_hit(const Plan& plan, const Vec3<T>& o, const Vec3<T>& d) {
   Hit<T> best;
   const auto offer = [&](const Hit<T>& hit) { best.offer(hit); };
-  hit_flat(plan, o, d, offer);
+  hit_flat(plan, plan.flat_quads.size(), plan.flat_triangles.size(), o, d, offer);
   const Shear<T> shear = make_shear(d);
   walk(plan.triangle_tree, SlabRay<T>(plan.triangle_tree.bounds, o, d), best.t, [&](uint32_t block) {
     hit_block(plan.triangle_blocks[block], o, shear, offer);

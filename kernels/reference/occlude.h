@@ -6,12 +6,13 @@
 
 namespace lanewise::reference {
 
-// Whether o + t d meets a primitive with 0 < t < 1.
+// Whether o + t d meets a primitive with 0 < t < 1; the ends are points of the scene, so that only blocking faces
+// count.
 template <class T>
 bool any_hit(const Plan& plan, const Vec3<T>& o, const Vec3<T>& d) {
   bool blocked = false;
   const auto notice = [&](const Hit<T>& hit) { blocked |= hit.t < 1; };
-  hit_flat(plan, o, d, notice);
+  hit_flat(plan, plan.blocking_quads, plan.blocking_triangles, o, d, notice);
   if (blocked) return true;
   const Shear<T> shear = make_shear(d);
   const T t_max = 1;

@@ -1,0 +1,114 @@
+#include "core/plan_flat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "core/parallelogram.h"
+#include "core/ray_offset.h"
+
+namespace lanewise {
+namespace {
+
+using glm::dvec3;
+
+// Rounding errors of a quad's test, in units of 2^-24: 4 of reach for the distance to its plane, and as many each for
+// the point there and for a.q + a_0, doubled for directions up to 60 degrees off the normal. A ray that grazes one of
+// two quads at a shared edge may be placed wrongly on it, but then it meets the other's plane within 4 units of that
+// edge.
+constexpr double kQuadUlps = 32;
+
+double sum_abs(const dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+dvec3 to_dvec3(const float* v) { return {v[0], v[1], v[2]}; }
+
+void copy(const dvec3& from, float* to) {
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
+}
+
+// The linear form that is -1 on the edge through the corner along `other` and 1 on the edge opposite.
+void make_axis(const Parallelogram& p, const dvec3& edge, const dvec3& other, double reach, float* a, float& a_0,
+               float& margin) {
+  const dvec3 n = glm::cross(p.e1, p.e2);
+  const dvec3 along = glm::cross(n, other);
+  const dvec3 form = along * (2 / glm::dot(along, edge));
+  const double offset = -glm::dot(form, p.corner + 0.5 * edge);
+  copy(form, a);
+  a_0 = static_cast<float>(offset);
+  margin = static_cast<float>(kQuadUlps * 0x1p-24 * (sum_abs(form) * reach + std::abs(offset) + 1));
+}
+
+FlatQuad make_quad(const Parallelogram& p, uint32_t prim, double camera_reach) {
+  double reach = camera_reach;
+  for (const dvec3& v : {p.corner, p.corner + p.e1, p.corner + p.e2, p.corner + p.e1 + p.e2}) {
+    reach = std::max(reach, sum_abs(v));
+  }
+  FlatQuad quad{};
+  const dvec3 n = glm::normalize(glm::cross(p.e1, p.e2));
+  copy(n, quad.n);
+  quad.distance = static_cast<float>(glm::dot(n, p.corner + 0.5 * (p.e1 + p.e2)));
+  make_axis(p, p.e1, p.e2, reach, quad.a, quad.a_0, quad.a_margin);
+  make_axis(p, p.e2, p.e1, reach, quad.b, quad.b_0, quad.b_margin);
+  quad.prim = prim;
+  return quad;
+}
+
+// Whether geometry lies on both sides of the plane n.p = distance, by more than the distance that ray origins keep
+// anyway.
+bool divides(const dvec3& n, double distance, std::span<const FlatTriangle> triangles,
+             std::span<const FlatSphere> spheres) {
+  bool front = false, behind = false;
+  const auto add = [&](double lowest, double highest, double reach) {
+    const double tolerance = kOffsetUlps * 0x1p-24 * (reach + std::abs(distance));
+    front |= highest > tolerance;
+    behind |= lowest < -tolerance;
+  };
+  for (const FlatTriangle& t : triangles) {
+    for (const float* v : t.v) {
+      const dvec3 p = to_dvec3(v);
+      const double side = glm::dot(n, p) - distance;
+      add(side, side, sum_abs(p));
+    }
+    if (front && behind) return true;
+  }
+  for (const FlatSphere& s : spheres) {
+    const dvec3 center = to_dvec3(s.center);
+    const double side = glm::dot(n, center) - distance;
+    add(side - double{s.radius}, side + double{s.radius}, sum_abs(center) + double{s.radius});
+  }
+  return front && behind;
+}
+
+}  // namespace
+
+void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles) {
+  const double camera_reach = sum_abs(to_dvec3(plan.camera.eye));
+  for (const Parallelogram& p : find_parallelograms(triangles)) {
+    const FlatTriangle& first = triangles[p.first];
+    if (p.is_triangle()) {
+      plan.flat_triangles.push_back(first);
+      continue;
+    }
+    const FlatQuad quad = make_quad(p, first.prim, camera_reach);
+    plan.flat_quads.push_back(quad);
+    // Hits on either half are hits of the first, on the quad's plane.
+    float* shape = &plan.prim_shape[4 * size_t{quad.prim}];
+    std::copy_n(quad.n, 3, shape);
+    shape[3] = quad.distance;
+    plan.prim_err[quad.prim] = std::max(plan.prim_err[quad.prim], triangle_offset(triangles[p.second].v));
+  }
+}
+
+void find_blocking_faces(Plan& plan, std::span<const FlatTriangle> triangles, std::span<const FlatSphere> spheres) {
+  const auto quads = std::stable_partition(plan.flat_quads.begin(), plan.flat_quads.end(), [&](const FlatQuad& q) {
+    return divides(to_dvec3(q.n), q.distance, triangles, spheres);
+  });
+  plan.blocking_quads = static_cast<uint32_t>(quads - plan.flat_quads.begin());
+  const auto faces =
+      std::stable_partition(plan.flat_triangles.begin(), plan.flat_triangles.end(), [&](const FlatTriangle& t) {
+        const float* shape = &plan.prim_shape[4 * size_t{t.prim}];
+        return divides(to_dvec3(shape), shape[3], triangles, spheres);
+      });
+  plan.blocking_triangles = static_cast<uint32_t>(faces - plan.flat_triangles.begin());
+}
+
+}  // namespace lanewise
