@@ -13,12 +13,16 @@ namespace lanewise {
 // All are 4 bytes wide. Lengths are in scene units relative to the plan's centre; directions are unit vectors unless
 // said otherwise; radiance and throughput are linear RGB. "Surface" below is the hit after the kernel `surface` has
 // run.
+// The first kRetiredFields are all that a finished path still needs.
 //
 //   KEPT(type, name, meaning)
 #define LANEWISE_PATH_FIELDS(KEPT, LOCAL)                                                                \
+  KEPT(uint32_t, slot, "the path's place in the wave at generate; where retire puts its radiance")       \
+  KEPT(float, L_r, "radiance gathered so far")                                                           \
+  KEPT(float, L_g, "")                                                                                   \
+  KEPT(float, L_b, "")                                                                                   \
   KEPT(uint32_t, pixel, "y * width + x, row 0 at the top")                                               \
   KEPT(uint32_t, sample, "index of the sample within its pixel")                                         \
-  KEPT(uint32_t, slot, "the path's place in the wave at generate; where retire puts its radiance")       \
   KEPT(float, o_x, "ray origin, offset off the surface it leaves; surface: the hit point itself")        \
   KEPT(float, o_y, "")                                                                                   \
   KEPT(float, o_z, "")                                                                                   \
@@ -28,9 +32,6 @@ namespace lanewise {
   KEPT(float, beta_r, "throughput: product of f cos / pdf so far; 0 ends the path")                      \
   KEPT(float, beta_g, "")                                                                                \
   KEPT(float, beta_b, "")                                                                                \
-  KEPT(float, L_r, "radiance gathered so far")                                                           \
-  KEPT(float, L_g, "")                                                                                   \
-  KEPT(float, L_b, "")                                                                                   \
   KEPT(float, pdf, "density of d per steradian at the last scattering; 0: camera or delta lobe")         \
   KEPT(uint32_t, prim, "primitive hit, or kNoPrim")                                                      \
   KEPT(float, t, "distance to the hit, +inf for none")                                                   \
@@ -51,6 +52,8 @@ namespace lanewise {
   LOCAL(float, c_r, "radiance that the light sample adds to L if it is seen")                            \
   LOCAL(float, c_g, "")                                                                                  \
   LOCAL(float, c_b, "")
+
+constexpr int kRetiredFields = 4;  // slot and L
 
 // What all paths of a wave share at one moment.
 struct Step {

@@ -33,7 +33,7 @@ struct alignas(64) PlanMaterial {
 };
 
 // Where gathers find a member: float number `member` of the material.
-enum MaterialMember : int32_t {
+enum MaterialMember : uint32_t {
   kReflectance = 0,
   kTransmittance = 3,
   kIor = 6,
@@ -86,11 +86,11 @@ struct FlatSphere {
   uint32_t prim;
 };
 
-// A parallelogram outside the trees. A point q of its plane is on it where |a.q + a_0| <= 1 + a_margin and the same for b.
-// The margins, some rounding errors wide, make quads that share an edge overlap there rather than leave a gap between them;
-// the picture sees quads that are larger by some millionths of the scene.
+// A parallelogram outside the trees. A point q of its plane is on it where |a.q + a_0| <= 1 + a_margin and the same for
+// b. The margins, some rounding errors wide, make quads that share an edge overlap there rather than leave a gap
+// between them; the picture sees quads that are larger by some millionths of the scene.
 struct FlatQuad {
-  float n[3];  // unit normal
+  float n[3];      // unit normal
   float distance;  // n.p of its points
   float a[3];
   float a_0;
@@ -152,8 +152,8 @@ struct Plan {
   std::vector<PlanLight> lights;
   AlignedVector<float> light_table;  // 4 a light, to gather by light: radiance, area
 
-  // Where rays look for them: every primitive is in exactly one of these five. Of quads and triangles the first are those
-  // that can block light between two points of the scene: one with all geometry on one side of its plane cannot.
+  // Where rays look for them: every primitive is in exactly one of these five. Of quads and triangles the first are
+  // those that can block light between two points of the scene: one with all geometry on one side of its plane cannot.
   std::vector<FlatQuad> flat_quads;
   std::vector<FlatTriangle> flat_triangles;
   uint32_t blocking_quads = 0;

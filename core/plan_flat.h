@@ -7,12 +7,12 @@
 
 namespace lanewise {
 
-// Puts a flat-shaded mesh's triangles into the lists; pairs that form a parallelogram become a quad, whose plane becomes
-// that of its primitive. The plan's camera must be placed: the margins of quads cover rays from it.
+// Puts a flat-shaded mesh's triangles into the lists; pairs that form a parallelogram become a quad, whose plane
+// becomes that of its primitive. The plan's camera must be placed: the margins of quads cover rays from it.
 void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles);
 
-// Puts the faces that can block light between two points of the scene first in their lists, and counts them. triangles and
-// spheres: all of the scene's.
+// Puts the faces that can block light between two points of the scene first in their lists, and counts them. triangles
+// and spheres: all of the scene's.
 void find_blocking_faces(Plan& plan, std::span<const FlatTriangle> triangles, std::span<const FlatSphere> spheres);
 
 }  // namespace lanewise

@@ -71,7 +71,7 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
     if (bounce > 0) ++profile.bounce_rays;
     reference::intersect(plan, p);
     if (p.bin == kEmitter) reference::emission(plan, p);
-    if (p.bin >= kSurfaceBins || bounce == plan.settings.max_depth) return profile.count_paths(bounce, 1);
+    if (p.bin >= kSurfaceBins) return profile.count_paths(bounce, 1);
     reference::surface(plan, p);
     add_direct_light(plan, p, profile);
     shade(plan, p);

@@ -83,11 +83,8 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     if (bounce > 0) profile_.bounce_rays += bins.paths(0, kBinCount) - bins.dead;
     run(Stage::kEmission, bins[kEmitter]);
 
-    const bool last = bounce == plan_.settings.max_depth;
-    const uint32_t first_to_end = last ? 0 : kSurfaceBins;
-    run(Stage::kRetire, bins.span(first_to_end, kBinCount), bins.paths(first_to_end, kBinCount));
-    profile_.count_paths(bounce, bins.paths(first_to_end, kBinCount));
-    if (last) break;
+    run(Stage::kRetire, bins.span(kSurfaceBins, kBinCount), bins.paths(kSurfaceBins, kBinCount));
+    profile_.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
 
     live = bins.span(0, kSurfaceBins);
     paths = bins.paths(0, kSurfaceBins);

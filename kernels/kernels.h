@@ -22,9 +22,11 @@ using Kernel = void(const Plan&, const PathState&, Range);
 // reads: batch. writes: pixel sample slot o d beta L pdf.
 void generate(const Plan& plan, const PathState& s, Range range);
 
-// Closest hit. Triangles are watertight (edge tests with exact signs after Woop, Benthin & Wald, JCGT 2013), spheres by
-// the stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path
-// with beta = 0 is not traced and goes to kFinished, as does one that misses. reads: o d beta. writes: prim t u v bin.
+// Closest hit. Triangles are watertight (edge tests with exact signs after Woop, Benthin & Wald, JCGT 2013), spheres by the
+// stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path with beta = 0
+// is not traced and goes to kFinished, as does one that misses, or that may not scatter at what it meets because it has done
+// so max_depth times.
+// reads: o d beta, step. writes: prim t u v bin.
 void intersect(const Plan& plan, const PathState& s, Range range);
 
 // Where each bin lies after the sort; bins begin at multiples of kLanes.
@@ -42,14 +44,15 @@ struct Bins {
   }
 };
 
-// Moves every path to its bin, and drops the padding that the sort before left: stable, bins contiguous, each padded
-// with the dummy path to a multiple of kLanes. The only kernel in which lanes meet. reads: bin, slot and all KEPT
-// fields of from. writes: all KEPT fields of to, all fields of its padding.
+// Moves every path to its bin, and drops the padding that the sort before left: stable, bins contiguous, each padded with
+// the dummy path to a multiple of kLanes. The only kernel in which lanes meet. Of what goes to kFinished only slot and L are
+// moved: nothing else of it will be read.
+// reads: bin, slot and all KEPT fields of from. writes: all KEPT fields of to, all fields of its padding.
 Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
 
 // Adds the radiance of the light that was hit from its front, weighted against light sampling by the power heuristic
 // (Veach 1997, eq. 9.13 with exponent 2).
-// reads: prim t d beta pdf, step. writes: L.
+// reads: prim t o d beta pdf L. writes: L.
 void emission(const Plan& plan, const PathState& s, Range range);
 
 // Hands the radiance of finished paths over to the wave's result, by slot.
@@ -62,17 +65,18 @@ void retire(const Plan& plan, const PathState& s, Range range);
 void surface(const Plan& plan, const PathState& s, Range range);
 
 // Samples light step.light by area and aims at it; l_pdf is 0 where the surface is behind the light.
-// reads: pixel sample o n err. writes: l l_pdf.
+// reads: pixel sample o n err, step. writes: l l_pdf.
 void sample_light(const Plan& plan, const PathState& s, Range range);
 
 // -H: aims uniformly into the hemisphere around the viewer's side of the shading normal; l is a unit vector.
-// reads: pixel sample d s. writes: l l_pdf.
+// reads: pixel sample d s, step. writes: l l_pdf.
 void sample_hemisphere(const Plan& plan, const PathState& s, Range range);
 
-// light_<material>: what the light sample adds if it is seen: c = beta f |cos| radiance / (l_pdf samples), times the
-// MIS weight against the material's own density. With -H the radiance is not known yet and left out. reads: d s beta l
-// l_pdf prim, step. writes: c. shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves
-// the origin off the surface. reads: pixel sample prim o d n s err beta. writes: o d beta pdf.
+// light_<material>: what the light sample adds if it is seen: c = beta f |cos| radiance / (l_pdf samples), times the MIS
+// weight against the material's own density. With -H the radiance is not known yet and left out.
+// reads: d s beta l l_pdf prim, step. writes: c.
+// shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves the origin off the surface.
+// reads: pixel sample prim o d n s err beta, step. writes: o d beta pdf.
 void light_diffuse(const Plan& plan, const PathState& s, Range range);
 void shade_diffuse(const Plan& plan, const PathState& s, Range range);
 // Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
@@ -85,15 +89,17 @@ void shade_mirror(const Plan& plan, const PathState& s, Range range);
 void shade_glass(const Plan& plan, const PathState& s, Range range);
 
 // Any hit on the open segment from the offset hit point to the light sample: if there is none, L += c. Not traced where
-// c = 0. reads: o n err l c. writes: L.
+// c = 0. Faces that cannot block light between points of the scene are left out: the plan knows which.
+// reads: o n err l c L. writes: L.
 void occlude(const Plan& plan, const PathState& s, Range range);
 
 // -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter. Not traced where c = 0.
-// reads: o n err l c. writes: L.
+// reads: o n err l c L. writes: L.
 void gather_emission(const Plan& plan, const PathState& s, Range range);
 
 // Russian roulette from bounce kRouletteBounce on: survives with probability q = min(kMaxSurvival, max channel of beta)
-// and beta / q, else beta = 0; unbiased for every q. reads: pixel sample beta, step. writes: beta.
+// and beta / q, else beta = 0; unbiased for every q.
+// reads: pixel sample beta, step. writes: beta.
 void roulette(const Plan& plan, const PathState& s, Range range);
 constexpr uint32_t kRouletteBounce = 4;
 constexpr float kMaxSurvival = 0.95f;

@@ -57,7 +57,8 @@ HWY_NOINLINE bool WalkSpheresAny(const Plan& plan, const SlabRays& slabs, const 
   return WalkUntil(plan.sphere_tree, slabs, lane, 1.0f, leaf);
 }
 
-// Which rays o + t dir, between two points of the scene, meet a primitive with 0 < t < 1. Lanes out of `wanted` meet none.
+// Which rays o + t dir, between two points of the scene, meet a primitive with 0 < t < 1. Lanes out of `wanted` meet
+// none.
 HWY_INLINE MF AnyHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted) {
   const DF d;
   const VF one = Splat(1.0f);

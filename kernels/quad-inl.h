@@ -1,5 +1,5 @@
-// One parallelogram against a vector of rays: where the ray meets its plane, and two linear forms there. See FlatQuad for
-// what its margins promise. Scalar twin: kernels/reference/quad.h.
+// One parallelogram against a vector of rays: where the ray meets its plane, and two linear forms there. See FlatQuad
+// for what its margins promise. Scalar twin: kernels/reference/quad.h.
 #if defined(LANEWISE_KERNELS_QUAD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LANEWISE_KERNELS_QUAD_INL_H_
 #undef LANEWISE_KERNELS_QUAD_INL_H_
@@ -19,8 +19,8 @@ HWY_INLINE VF LinearForm(const float* a, float c, const Vec3& p) {
   return hn::MulAdd(Splat(a[0]), p.x, hn::MulAdd(Splat(a[1]), p.y, hn::MulAdd(Splat(a[2]), p.z, Splat(c))));
 }
 
-// Sets t to the distance of the quad's plane along o + t dir; returns whether it is met on the quad with t > 0. A ray within
-// the plane divides by 0, and then the comparisons fail.
+// Sets t to the distance of the quad's plane along o + t dir; returns whether it is met on the quad with t > 0. A ray
+// within the plane divides by 0, and then the comparisons fail.
 HWY_INLINE MF TestQuad(const FlatQuad& quad, const Vec3& o, const Vec3& dir, VF& t) {
   const Vec3 n = SplatVec3(quad.n);
   t = hn::Div(hn::Neg(LinearForm(quad.n, -quad.distance, o)), Dot(n, dir));

@@ -7,10 +7,9 @@
 #define LANEWISE_KERNELS_SHADING_INL_H_
 #endif
 
-#include <cstring>
-
 #include "core/plan.h"
 #include "kernels/math-inl.h"
+#include "kernels/records-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,31 +23,14 @@ HWY_INLINE Vec3 ViewerSide(const Vec3& s, const Vec3& d) {
   return {hn::Xor(s.x, flip), hn::Xor(s.y, flip), hn::Xor(s.z, flip)};
 }
 
-// The materials of the paths from slot i on, one a lane. Members are fetched four at a time lane by lane and
-// transposed: with gather instructions shade_diffuse takes a quarter longer on Zen 3.
-struct LaneMaterials {
-  const float* lane[hn::MaxLanes(DF())];
-
-  LaneMaterials(const Plan& plan, const PathState& s, size_t i) {
+// The materials of the paths from slot i on; members by MaterialMember.
+struct LaneMaterials : LaneRecords {
+  HWY_INLINE LaneMaterials(const Plan& plan, const PathState& s, size_t i) {
     static_assert(sizeof(PlanMaterial) == kMaterialStride * sizeof(float));
     const float* materials = plan.materials[0].reflectance;
     for (size_t k = 0; k < hn::Lanes(DF()); ++k) {
       lane[k] = materials + size_t{kMaterialStride} * plan.prim_material[s.prim[i + k]];
     }
-  }
-
-  // Members first .. first + 3.
-  HWY_INLINE void Get4(int32_t first, VF& a, VF& b, VF& c, VF& d) const {
-    HWY_ALIGN float values[4 * hn::MaxLanes(DF())];
-    for (size_t k = 0; k < hn::Lanes(DF()); ++k) std::memcpy(values + 4 * k, lane[k] + first, 4 * sizeof(float));
-    hn::LoadInterleaved4(DF(), values, a, b, c, d);
-  }
-
-  HWY_INLINE Vec3 GetVec3(int32_t first) const {
-    Vec3 v;
-    VF next;
-    Get4(first, v.x, v.y, v.z, next);
-    return v;
   }
 };
 

@@ -82,17 +82,20 @@ Bins SortByBin(const PathState& from, const PathState& to, Range range) {
   for (uint32_t b = 0; b < kBinCount; ++b) {
     bins.bin[b] = {cursor, cursor + count[b]};
     if (count[b] == 0) continue;
+    const int fields = b == kFinished ? kRetiredFields : FieldWords::kKept;
     for (size_t i = range.begin; i < range.end; i += lanes) {
       const auto member = hn::Eq(LoadBins(from, i, padding_slot), hn::Set(d, b));
       const size_t members = hn::CountTrue(d, member);
       if (members == 0) continue;
+      if (b == kFinished) {
+        const auto dead = hn::Eq(MaxElement(LoadVec3(from.beta_r, from.beta_g, from.beta_b, i)), hn::Zero(DF()));
+        bins.dead += static_cast<uint32_t>(hn::CountTrue(d, hn::And(member, hn::RebindMask(d, dead))));
+      }
       if (members == lanes) {
-        for (int f = 0; f < FieldWords::kKept; ++f) {
-          hn::StoreU(hn::Load(d, source.words[f] + i), d, target.words[f] + cursor);
-        }
+        for (int f = 0; f < fields; ++f) hn::StoreU(hn::Load(d, source.words[f] + i), d, target.words[f] + cursor);
       } else {
         const Compressor compress(member);
-        for (int f = 0; f < FieldWords::kKept; ++f) {
+        for (int f = 0; f < fields; ++f) {
           hn::StoreU(compress(hn::Load(d, source.words[f] + i)), d, target.words[f] + cursor);
         }
       }
@@ -103,14 +106,6 @@ Bins SortByBin(const PathState& from, const PathState& to, Range range) {
       for (size_t k = 0; k < kLanes; k += lanes) hn::StoreU(fill, d, target.words[f] + cursor + k);
     }
     cursor = round_up_to_lanes(cursor);
-  }
-
-  const Range finished = bins[kFinished];
-  const DF df;
-  for (size_t i = finished.begin; i < finished.end; i += lanes) {
-    const auto dead = hn::Eq(MaxElement(LoadVec3(to.beta_r, to.beta_g, to.beta_b, i)), hn::Zero(df));
-    const auto real = hn::Ne(hn::Load(d, to.slot + i), padding_slot);
-    bins.dead += static_cast<uint32_t>(hn::CountTrue(df, hn::And(dead, hn::RebindMask(df, real))));
   }
   return bins;
 }

@@ -42,8 +42,8 @@ struct Bounce {
     intersect(plan, s, {0, n});
     std::vector<uint32_t> first(n);
     std::vector<bool> out(n);
-    for (uint32_t i = 0; i < n; ++i) {
-      first[i] = s.prim[i];
+    for (uint32_t i = 0; i < n; ++i) first[i] = s.prim[i];
+    for (uint32_t i = 0; i < round_up_to_lanes(n); ++i) {  // as the sort would leave it: no misses, harmless padding
       if (s.prim[i] == kNoPrim) s.prim[i] = 0;
       if (!(s.t[i] < 1e30f)) s.t[i] = 1;
     }

@@ -106,6 +106,7 @@ void intersect(const Plan& plan, Path<T>& p) {
   p.v = hit.v;
   p.prim = hit.prim;
   p.bin = hit.prim == kNoPrim ? uint32_t{kFinished} : plan.prim_bin[hit.prim];
+  if (p.step.bounce >= plan.settings.max_depth && p.bin != kEmitter) p.bin = kFinished;
 }
 
 }  // namespace lanewise::reference
