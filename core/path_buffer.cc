@@ -17,17 +17,6 @@ constexpr int count_fields() {
 
 }  // namespace
 
-Path<float> PathBuffer::dummy_path(uint32_t capacity) {
-  Path<float> p;
-  p.slot = capacity;
-  p.d_z = 1;
-  p.t = 1;
-  p.bin = kFinished;
-  p.n_z = p.s_z = 1;
-  p.l_z = 1;
-  return p;
-}
-
 PathBuffer::PathBuffer(uint32_t capacity)
     : capacity_(round_up_to_lanes(capacity)), padded_(capacity_ + 2 * kLanes * kBinCount) {
   const uint32_t stride = padded_ + kStagger;

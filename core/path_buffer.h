@@ -18,9 +18,6 @@ class PathBuffer {
   uint32_t capacity() const { return capacity_; }
   uint32_t padded_capacity() const { return padded_; }
 
-  // The harmless path that fills padding: see PathState.
-  static Path<float> dummy_path(uint32_t capacity);
-
  private:
   uint32_t capacity_;
   uint32_t padded_;

@@ -104,6 +104,17 @@ struct Path {
   Step step;
 };
 
+// The harmless path that fills padding: see PathState.
+inline Path<float> dummy_path(uint32_t capacity) {
+  Path<float> p;
+  p.slot = capacity;
+  p.d_z = 1;
+  p.t = 1;
+  p.n_z = p.s_z = 1;
+  p.l_z = 1;
+  return p;
+}
+
 // Path<T> from and to slot i of the arrays.
 template <class T>
 Path<T> load_path(const PathState& s, uint32_t i) {

@@ -5,8 +5,10 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "core/dimensions.h"
 #include "core/plan_flat.h"
 #include "core/plan_lights.h"
+#include "core/plan_trees.h"
 #include "core/ray_offset.h"
 #include "core/scene.h"
 
@@ -65,6 +67,7 @@ class Planner {
     find_blocking_faces(plan_, corners_, spheres_);
     build_trees();
     choose_stages();
+    check_random_sets();
     return std::move(plan_);
   }
 
@@ -202,65 +205,18 @@ class Planner {
   }
 
   void build_trees() {
-    std::vector<Box> boxes;
-    for (const FlatTriangle& t : tree_triangles_) {
-      Box box;
-      for (int axis = 0; axis < 3; ++axis) {
-        box.lo[axis] = std::min({t.v[0][axis], t.v[1][axis], t.v[2][axis]});
-        box.hi[axis] = std::max({t.v[0][axis], t.v[1][axis], t.v[2][axis]});
-      }
-      boxes.push_back(box);
-    }
-    plan_.triangle_tree = build_bvh(boxes);
-    const std::vector<uint32_t>& order = plan_.triangle_tree.leaf_prims;
-    plan_.triangle_blocks.assign(order.size() / kLeafWidth, TriangleBlock{});
-    for (size_t i = 0; i < order.size(); ++i) {
-      TriangleBlock& block = plan_.triangle_blocks[i / kLeafWidth];
-      const size_t lane = i % kLeafWidth;
-      block.prim[lane] = kNoPrim;
-      if (order[i] == kNoPrim) continue;
-      const FlatTriangle& t = tree_triangles_[order[i]];
-      block.prim[lane] = t.prim;
-      for (int corner = 0; corner < 3; ++corner) {
-        for (int axis = 0; axis < 3; ++axis) block.v[corner][axis][lane] = t.v[corner][axis];
-      }
-    }
+    plant_triangles(plan_, tree_triangles_);
     say("flat lists, tested by whole vectors of rays: " + std::to_string(plan_.flat_quads.size()) +
         " parallelograms (" + std::to_string(plan_.blocking_quads) + " of them can block light), " +
         std::to_string(plan_.flat_triangles.size()) + " triangles (" + std::to_string(plan_.blocking_triangles) + ")");
     say(std::to_string(tree_triangles_.size()) + " triangles in an 8-wide tree");
-    build_sphere_tree();
-  }
-
-  void build_sphere_tree() {
-    if (spheres_.size() <= kMaxFlatSpheres) {
+    const bool few = spheres_.size() <= kMaxFlatSpheres;
+    if (few) {
       plan_.flat_spheres = spheres_;
-      say(std::to_string(spheres_.size()) + " spheres in a flat list");
-      return;
+    } else {
+      plant_spheres(plan_, spheres_);
     }
-    std::vector<Box> boxes;
-    for (const FlatSphere& s : spheres_) {
-      Box box;
-      for (int axis = 0; axis < 3; ++axis) {
-        box.lo[axis] = std::nextafter(s.center[axis] - s.radius, -INFINITY);
-        box.hi[axis] = std::nextafter(s.center[axis] + s.radius, INFINITY);
-      }
-      boxes.push_back(box);
-    }
-    plan_.sphere_tree = build_bvh(boxes);
-    const std::vector<uint32_t>& order = plan_.sphere_tree.leaf_prims;
-    plan_.sphere_blocks.assign(order.size() / kLeafWidth, SphereBlock{});
-    for (size_t i = 0; i < order.size(); ++i) {
-      SphereBlock& block = plan_.sphere_blocks[i / kLeafWidth];
-      const size_t lane = i % kLeafWidth;
-      block.prim[lane] = kNoPrim;
-      if (order[i] == kNoPrim) continue;
-      const FlatSphere& s = spheres_[order[i]];
-      block.prim[lane] = s.prim;
-      block.radius[lane] = s.radius;
-      for (int axis = 0; axis < 3; ++axis) block.center[axis][lane] = s.center[axis];
-    }
-    say(std::to_string(spheres_.size()) + " spheres in an 8-wide tree");
+    say(std::to_string(spheres_.size()) + " spheres in " + (few ? "a flat list" : "an 8-wide tree"));
   }
 
   void choose_stages() {
@@ -279,6 +235,16 @@ class Planner {
     say("materials: " + (names.empty() ? "none scatters" : names));
     say(std::to_string(plan_.lights.size()) + (plan_.lights.size() == 1 ? " light" : " lights") +
         ", each sampled at every vertex");
+  }
+
+  // Every light sample of a vertex draws a set of its own.
+  void check_random_sets() const {
+    const uint64_t sets = uint64_t{plan_.lights.size()} * plan_.settings.light_samples;
+    if (sets > kSetsPerBounce - kSetLight) {
+      throw Error(scene_.path + ": " + std::to_string(plan_.lights.size()) + " lights with " +
+                  std::to_string(plan_.settings.light_samples) + " samples each are too many; at most " +
+                  std::to_string(kSetsPerBounce - kSetLight) + " samples a vertex");
+    }
   }
 
   const Scene& scene_;

@@ -1,6 +1,5 @@
 #include <bit>
 
-#include "core/path_buffer.h"
 #include "kernels/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -32,12 +31,12 @@ struct FieldWords {
   }
 };
 
-// What the padding of every bin is filled with: PathBuffer's dummy path.
+// What the padding of every bin is filled with: the dummy path.
 struct DummyWords {
   uint32_t words[FieldWords::kAll];
 
   explicit DummyWords(uint32_t capacity) {
-    const Path<float> dummy = PathBuffer::dummy_path(capacity);
+    const Path<float> dummy = dummy_path(capacity);
     int n = 0;
 #define LANEWISE_WORD(type, name, meaning) words[n++] = std::bit_cast<uint32_t>(dummy.name);
     LANEWISE_PATH_FIELDS(LANEWISE_WORD, LANEWISE_WORD)

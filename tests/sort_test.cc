@@ -32,7 +32,7 @@ void check_sort(uint32_t n, const std::function<uint32_t(uint32_t)>& next_bin) {
     test::fill_random(plan, rng, p, i);
     p.bin = next_bin(i);
     if (p.bin == kBinCount) {  // stands for padding between the bins of the sort before
-      p = PathBuffer::dummy_path(capacity);
+      p = dummy_path(capacity);
     } else {
       ++real;
       if (p.bin == kFinished && i % 2) p.beta_r = p.beta_g = p.beta_b = 0, ++dead;

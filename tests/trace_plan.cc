@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/plan_trees.h"
 #include "core/ray_offset.h"
 #include "kernels/kernels.h"
 #include "kernels/reference/vec3.h"
@@ -37,53 +38,6 @@ FlatSphere add_ball(Plan& plan, const Ball& ball) {
   return flat;
 }
 
-void plant_triangles(Plan& plan, const std::vector<FlatTriangle>& triangles) {
-  std::vector<Box> boxes;
-  for (const FlatTriangle& t : triangles) {
-    Box box;
-    for (int a = 0; a < 3; ++a) {
-      box.lo[a] = std::min({t.v[0][a], t.v[1][a], t.v[2][a]});
-      box.hi[a] = std::max({t.v[0][a], t.v[1][a], t.v[2][a]});
-    }
-    boxes.push_back(box);
-  }
-  plan.triangle_tree = build_bvh(boxes);
-  const std::vector<uint32_t>& order = plan.triangle_tree.leaf_prims;
-  plan.triangle_blocks.assign(order.size() / kLeafWidth, TriangleBlock{});
-  for (size_t i = 0; i < order.size(); ++i) {
-    TriangleBlock& block = plan.triangle_blocks[i / kLeafWidth];
-    const size_t lane = i % kLeafWidth;
-    block.prim[lane] = order[i] == kNoPrim ? kNoPrim : triangles[order[i]].prim;
-    if (order[i] == kNoPrim) continue;
-    for (int k = 0; k < 3; ++k) {
-      for (int a = 0; a < 3; ++a) block.v[k][a][lane] = triangles[order[i]].v[k][a];
-    }
-  }
-}
-
-void plant_balls(Plan& plan, const std::vector<FlatSphere>& balls) {
-  std::vector<Box> boxes;
-  for (const FlatSphere& s : balls) {
-    Box box;
-    for (int a = 0; a < 3; ++a) {
-      box.lo[a] = std::nextafter(s.center[a] - s.radius, -INFINITY);
-      box.hi[a] = std::nextafter(s.center[a] + s.radius, INFINITY);
-    }
-    boxes.push_back(box);
-  }
-  plan.sphere_tree = build_bvh(boxes);
-  const std::vector<uint32_t>& order = plan.sphere_tree.leaf_prims;
-  plan.sphere_blocks.assign(order.size() / kLeafWidth, SphereBlock{});
-  for (size_t i = 0; i < order.size(); ++i) {
-    SphereBlock& block = plan.sphere_blocks[i / kLeafWidth];
-    const size_t lane = i % kLeafWidth;
-    block.prim[lane] = order[i] == kNoPrim ? kNoPrim : balls[order[i]].prim;
-    if (order[i] == kNoPrim) continue;
-    block.radius[lane] = balls[order[i]].radius;
-    for (int a = 0; a < 3; ++a) block.center[a][lane] = balls[order[i]].center[a];
-  }
-}
-
 }  // namespace
 
 Plan trace_plan(const std::vector<Triangle>& triangles, const std::vector<Ball>& balls, Keep keep) {
@@ -94,7 +48,7 @@ Plan trace_plan(const std::vector<Triangle>& triangles, const std::vector<Ball>&
   plan.light_table.assign(4, 0.0f);
   if (keep == Keep::kTrees) {
     plant_triangles(plan, plan.flat_triangles);
-    plant_balls(plan, plan.flat_spheres);
+    plant_spheres(plan, plan.flat_spheres);
     plan.flat_triangles.clear();
     plan.flat_spheres.clear();
   }
