@@ -4,16 +4,29 @@
 
 namespace lanewise {
 
-Image develop(const Film& film, uint32_t width, uint32_t height) {
-  Image image(width, height);
-  for (size_t i = 0; i < film.sums.size(); ++i) {
-    if (film.samples[i] == 0) continue;
-    const double scale = 1.0 / film.samples[i];
-    image.rgb[3 * i] = static_cast<float>(film.sums[i].r * scale);
-    image.rgb[3 * i + 1] = static_cast<float>(film.sums[i].g * scale);
-    image.rgb[3 * i + 2] = static_cast<float>(film.sums[i].b * scale);
+Image develop(const Film& film, uint32_t width, const Window& window) {
+  Image image(window.width, window.height);
+  for (uint32_t y = 0; y < window.height; ++y) {
+    for (uint32_t x = 0; x < window.width; ++x) {
+      const size_t i = size_t{window.y + y} * width + window.x + x;
+      if (film.samples[i] == 0) continue;
+      const double scale = 1.0 / film.samples[i];
+      float* rgb = image.pixel(x, y);
+      rgb[0] = static_cast<float>(film.sums[i].r * scale);
+      rgb[1] = static_cast<float>(film.sums[i].g * scale);
+      rgb[2] = static_cast<float>(film.sums[i].b * scale);
+    }
   }
   return image;
+}
+
+std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Window& window) {
+  std::vector<uint32_t> counts;
+  for (uint32_t y = window.y; y < window.y + window.height; ++y) {
+    const auto row = film.samples.begin() + static_cast<ptrdiff_t>(size_t{y} * width + window.x);
+    counts.insert(counts.end(), row, row + window.width);
+  }
+  return counts;
 }
 
 bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/settings.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -17,8 +18,9 @@ struct Film {
   explicit Film(size_t pixels) : sums(pixels), samples(pixels) {}
 };
 
-// The mean of each pixel.
-Image develop(const Film& film, uint32_t width, uint32_t height);
+// The mean of each pixel of the window, and how many samples it is of. width: of the whole picture.
+Image develop(const Film& film, uint32_t width, const Window& window);
+std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Window& window);
 
 // Whether a pixel's 95% confidence interval is within the tolerance: 1.96 sigma / sqrt(n) <= tolerance * mean, of
 // luminance, with the sample variance (0 for n = 1).

@@ -116,15 +116,16 @@ template <class T>
 RenderResult render_reference(const Plan& plan, const std::function<void(const Progress&)>& progress) {
   const auto start = std::chrono::steady_clock::now();
   const Settings& settings = plan.settings;
-  const uint32_t threads = thread_count(settings, settings.height);
+  const Window window = settings.window();
+  const uint32_t threads = thread_count(settings, window.height);
   Film film(size_t{settings.width} * settings.height);
   std::vector<Profile> profiles(threads);
   run_workers(
-      threads, settings.height,
+      threads, window.height,
       [&](size_t row, uint32_t worker) {
         const uint64_t before = profiles[worker].rays();
-        for (uint32_t x = 0; x < settings.width; ++x) {
-          sample_pixel<T>(plan, static_cast<uint32_t>(row) * settings.width + x, film, profiles[worker]);
+        for (uint32_t x = window.x; x < window.x + window.width; ++x) {
+          sample_pixel<T>(plan, (window.y + static_cast<uint32_t>(row)) * settings.width + x, film, profiles[worker]);
         }
         return profiles[worker].rays() - before;
       },
@@ -132,7 +133,8 @@ RenderResult render_reference(const Plan& plan, const std::function<void(const P
 
   Profile profile;
   for (const Profile& p : profiles) profile.add(p);
-  RenderResult result{develop(film, settings.width, settings.height), std::move(film.samples), make_stats(profile)};
+  RenderResult result{develop(film, settings.width, window), sample_counts(film, settings.width, window),
+                      make_stats(profile)};
   result.stats.threads = threads;
   result.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

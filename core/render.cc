@@ -66,7 +66,9 @@ RenderResult render(const Plan& plan, const std::function<void(const Progress&)>
   for (const std::unique_ptr<Wave>& wave : waves) {
     if (wave) profile.add(wave->profile());
   }
-  RenderResult result{develop(film, settings.width, settings.height), std::move(film.samples), make_stats(profile)};
+  const Window window = settings.window();
+  RenderResult result{develop(film, settings.width, window), sample_counts(film, settings.width, window),
+                      make_stats(profile)};
   result.stats.threads = threads;
   result.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

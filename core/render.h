@@ -40,8 +40,8 @@ struct Progress {
 };
 
 struct RenderResult {
-  Image image;
-  std::vector<uint32_t> samples;  // per pixel
+  Image image;                    // of settings.window()
+  std::vector<uint32_t> samples;  // per pixel of it
   RenderStats stats;
 };
 

@@ -11,9 +11,15 @@ enum class Direct { kMis, kLight, kBsdf, kHemisphere };  // how direct light is 
 enum class BsdfSampling { kVndf, kNdf, kCosine };        // how microfacets choose a direction
 enum class Fresnel { kExact, kSchlick, kCourse };
 
+// A rectangle of pixels of the whole picture; row 0 is at the top.
+struct Window {
+  uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
 struct Settings {
   uint32_t width = 480;
   uint32_t height = 360;
+  Window crop;                  // -p: the part to render, within the picture; width 0: all of it
   uint32_t spp = 16;           // camera samples per pixel, >= 1
   uint32_t light_samples = 1;  // per light at every vertex, >= 1
   uint32_t max_depth = 5;      // most scattering events on a path; 0: only light seen directly
@@ -26,6 +32,9 @@ struct Settings {
   Fresnel fresnel = Fresnel::kExact;
   uint32_t adaptive_batch = 0;       // -a: samples between two decisions; 0: off
   double adaptive_tolerance = 0.05;  // stop a pixel when 1.96 sigma / sqrt(n) <= tolerance * mean
+
+  // The pixels that are rendered, and the result's size.
+  Window window() const { return crop.width > 0 ? crop : Window{0, 0, width, height}; }
 };
 
 }  // namespace lanewise

@@ -19,13 +19,14 @@ inline std::vector<Tile> make_tiles(const Settings& settings) {
   constexpr uint32_t kMinSide = 16, kMaxSide = 64;
   uint32_t side = kMinSide;
   while (side < kMaxSide && uint64_t{side} * side * settings.spp < settings.wave) side *= 2;
+  const Window window = settings.window();
+  const uint32_t x_end = window.x + window.width, y_end = window.y + window.height;
   std::vector<Tile> tiles;
-  for (uint32_t y0 = 0; y0 < settings.height; y0 += side) {
-    for (uint32_t x0 = 0; x0 < settings.width; x0 += side) {
+  for (uint32_t y0 = window.y; y0 < y_end; y0 += side) {
+    for (uint32_t x0 = window.x; x0 < x_end; x0 += side) {
       Tile& tile = tiles.emplace_back();
-      for (uint32_t y = y0; y < std::min(y0 + side, settings.height); ++y) {
-        for (uint32_t x = x0; x < std::min(x0 + side, settings.width); ++x)
-          tile.pixels.push_back(y * settings.width + x);
+      for (uint32_t y = y0; y < std::min(y0 + side, y_end); ++y) {
+        for (uint32_t x = x0; x < std::min(x0 + side, x_end); ++x) tile.pixels.push_back(y * settings.width + x);
       }
     }
   }

@@ -95,7 +95,7 @@ TEST_CASE("film: the mean, and when a pixel has converged") {
   Film film(2);
   film.sums[0] = {2, 4, 6, 0};
   film.samples[0] = 2;
-  const Image image = develop(film, 2, 1);
+  const Image image = develop(film, 2, {0, 0, 2, 1});
   CHECK(image.rgb[0] == 1);
   CHECK(image.rgb[2] == 3);
   CHECK(image.rgb[3] == 0);

@@ -112,6 +112,26 @@ TEST_CASE("render: FMA targets agree bit for bit") {
   });
 }
 
+TEST_CASE("render: a crop's pixels are the whole picture's") {
+  Settings settings = small();
+  const RenderResult whole = render(make_plan(test::test_scene(), settings));
+  settings.crop = {7, 11, 20, 9};
+  const Plan plan = make_plan(test::test_scene(), settings);
+  const RenderResult part = render(plan), scalar = render_reference<float>(plan);
+  REQUIRE(part.image.width == 20);
+  REQUIRE(part.image.height == 9);
+  CHECK(part.samples.size() == 20 * 9);
+  CHECK(part.stats.samples == 20 * 9 * settings.spp);
+  bool same = true;
+  for (uint32_t y = 0; y < 9; ++y) {
+    for (uint32_t x = 0; x < 20; ++x) {
+      for (int k = 0; k < 3; ++k) same &= part.image.pixel(x, y)[k] == whole.image.pixel(x + 7, y + 11)[k];
+    }
+  }
+  CHECK(same);
+  CHECK(differing(scalar.image, part.image) < 0.02);
+}
+
 TEST_CASE("render: another seed, another picture of the same scene") {
   Settings settings = small();
   const RenderResult a = render(make_plan(test::test_scene(), settings));

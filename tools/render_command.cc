@@ -9,6 +9,7 @@
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/types.h"
+#include "scenes/camera_file.h"
 #include "scenes/load.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
@@ -108,6 +109,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   progress.show("loading " + o.scene);
   Scene scene = timed(seconds.load, [&] { return load_scene(o.scene); });
   apply_overrides(scene, o);
+  if (!o.camera_file.empty()) scene.cameras = {load_camera(o.camera_file)};
   progress.show("planning");
   const Plan plan = timed(seconds.plan, [&] { return make_plan(scene, o.settings); });
   const RenderResult result = timed(

@@ -24,8 +24,6 @@ constexpr struct {
     {"-e,--environment", "FILE", 1, "Environment map"},
     {"-b,--lens-radius", "R", 1, "Radius of a thin lens"},
     {"-d,--focal-distance", "D", 1, "Distance that the lens focuses on"},
-    {"-p,--crop", "X Y DX DY", 4, "Render this part of the picture"},
-    {"-c,--camera-file", "FILE", 1, "Camera in place of the scene's"},
 };
 
 void add_picture_flags(CLI::App& app, RenderOptions& o) {
@@ -38,6 +36,12 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
   add_choice<Normals>(app, "--normals", o.normals,
                       {{"file", Normals::kFile}, {"smooth", Normals::kSmooth}, {"flat", Normals::kFlat}},
                       "Shading normals: the file's, interpolated, or the faces' own");
+  app.add_option("-p,--crop", o.crop, "Only these pixels of it: upper left corner and size")
+      ->check(whole_number(0, kMaxSide))
+      ->type_name("X Y DX DY");
+  app.add_option("-c,--camera-file", o.camera_file,
+                 "Camera (JSON: eye, target, up, xfov, aspect) in place of the scene's")
+      ->type_name("FILE");
 }
 
 void add_sampling_flags(CLI::App& app, RenderOptions& o) {
@@ -175,6 +179,14 @@ void complete(RenderOptions& o, const CLI::App& app) {
     throw UsageError("--resolution: more than 2^28 pixels");
   }
   std::tie(o.settings.width, o.settings.height) = o.resolution;
+  if (app.count("--crop") > 0) {
+    const auto [x, y, width, height] = o.crop;
+    if (width == 0 || height == 0 || x + width > o.settings.width || y + height > o.settings.height) {
+      throw UsageError("--crop: must be a part of the picture's " + std::to_string(o.settings.width) + " x " +
+                       std::to_string(o.settings.height) + " pixels");
+    }
+    o.settings.crop = {x, y, width, height};
+  }
   std::tie(o.settings.adaptive_batch, o.settings.adaptive_tolerance) = o.adaptive;
   if (o.output.empty()) o.output = default_output(o.scene);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,8 +17,9 @@ enum class Reference { kNone, kFloat, kDouble };  // the scalar path tracer in p
 
 struct RenderOptions {
   std::string scene;
-  std::string output;  // the picture's file; complete() fills it in
-  std::string stats;   // the statistics' file; empty: none
+  std::string output;       // the picture's file; complete() fills it in
+  std::string camera_file;  // empty: the scene's camera
+  std::string stats;        // the statistics' file; empty: none
   Settings settings;
   Normals normals = Normals::kFile;
   std::string isa;  // empty: the best here
@@ -29,6 +31,7 @@ struct RenderOptions {
 
   // As the parser needs them; complete() moves them into the settings.
   std::pair<uint32_t, uint32_t> resolution{settings.width, settings.height};
+  std::array<uint32_t, 4> crop{};
   std::pair<uint32_t, double> adaptive{settings.adaptive_batch, settings.adaptive_tolerance};
   bool hemisphere = false;
 };

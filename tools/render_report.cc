@@ -52,8 +52,8 @@ std::string stats_json(const RenderReport& r) {
       {"scene", r.options.scene},
       {"command", r.command_line},
       {"version", kVersion},
-      {"width", settings.width},
-      {"height", settings.height},
+      {"width", settings.window().width},
+      {"height", settings.window().height},
       {"spp", settings.spp},
       {"max_depth", settings.max_depth},
       {"seed", settings.seed},
@@ -85,9 +85,9 @@ std::string stats_json(const RenderReport& r) {
 std::string summary(const RenderReport& r) {
   const Settings& settings = r.options.settings;
   const RenderStats& s = r.stats;
-  const uint64_t pixels = uint64_t{settings.width} * settings.height;
+  const uint64_t pixels = uint64_t{settings.window().width} * settings.window().height;
   std::string text = r.options.scene + " -> " + r.options.output + "\n";
-  text += std::to_string(settings.width) + " x " + std::to_string(settings.height) + ", ";
+  text += std::to_string(settings.window().width) + " x " + std::to_string(settings.window().height) + ", ";
   if (settings.adaptive_batch > 0) {
     char mean[32];
     std::snprintf(mean, sizeof mean, "%.1f", static_cast<double>(s.samples) / static_cast<double>(pixels));
