@@ -7,8 +7,6 @@
 #define LANEWISE_KERNELS_RECORDS_INL_H_
 #endif
 
-#include <cstring>
-
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,9 +24,22 @@ struct LaneRecords {
 
   // Members first .. first + 3; the last record must be followed by as many floats as are read past its end.
   HWY_INLINE void Get4(size_t first, VF& a, VF& b, VF& c, VF& d) const {
-    HWY_ALIGN float values[4 * hn::MaxLanes(DF())];
-    for (size_t k = 0; k < hn::Lanes(DF()); ++k) std::memcpy(values + 4 * k, lane[k] + first, 4 * sizeof(float));
-    hn::LoadInterleaved4(DF(), values, a, b, c, d);
+#if HWY_TARGET == HWY_SCALAR
+    a = hn::Set(DF(), lane[0][first]);
+    b = hn::Set(DF(), lane[0][first + 1]);
+    c = hn::Set(DF(), lane[0][first + 2]);
+    d = hn::Set(DF(), lane[0][first + 3]);
+#else
+    // Row i holds lanes i, i + 4, i + 8, ...; each block of four floats is then transposed with its neighbours' in place.
+    const DF df;
+    const VF r0 = Row(df, first, 0), r1 = Row(df, first, 1), r2 = Row(df, first, 2), r3 = Row(df, first, 3);
+    const VF ab_even = hn::InterleaveLower(df, r0, r2), ab_odd = hn::InterleaveLower(df, r1, r3);
+    const VF cd_even = hn::InterleaveUpper(df, r0, r2), cd_odd = hn::InterleaveUpper(df, r1, r3);
+    a = hn::InterleaveLower(df, ab_even, ab_odd);
+    b = hn::InterleaveUpper(df, ab_even, ab_odd);
+    c = hn::InterleaveLower(df, cd_even, cd_odd);
+    d = hn::InterleaveUpper(df, cd_even, cd_odd);
+#endif
   }
 
   HWY_INLINE Vec3 GetVec3(size_t first) const {
@@ -43,6 +54,22 @@ struct LaneRecords {
     for (size_t k = 0; k < hn::Lanes(DF()); ++k) values[k] = lane[k][member];
     return hn::Load(DF(), values);
   }
+
+#if HWY_TARGET != HWY_SCALAR
+
+ private:
+  // Four floats of each of the records lane, lane + 4, ... side by side; combined in registers, since a store of parts and a
+  // load of the whole would wait for each other.
+  template <class D>
+  HWY_INLINE hn::Vec<D> Row(D d, size_t first, size_t k) const {
+    if constexpr (hn::MaxLanes(D()) == 4) {
+      return hn::LoadU(d, lane[k] + first);
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, Row(half, first, k + hn::MaxLanes(half)), Row(half, first, k));
+    }
+  }
+#endif
 };
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
