@@ -5,6 +5,7 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
+#include "kernels/records-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,8 +22,9 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
     const VI prim = hn::BitCast(di, hn::Load(DU(), s.prim + i));
     const Vec3 dir = LoadVec3(s.d_x, s.d_y, s.d_z, i);
     const VF t = hn::Load(d, s.t + i);
-    const VI shape = hn::ShiftLeft<2>(prim);
-    Vec3 n = GatherVec3(plan.prim_shape.data(), shape);
+    Vec3 n;
+    VF size;
+    LaneRecords(plan.prim_shape.data(), 4, s.prim + i).Get4(0, n.x, n.y, n.z, size);
     if (plan.spheres > 0) {
       const MF is_sphere = hn::RebindMask(d, hn::Gt(prim, hn::Set(di, static_cast<int32_t>(plan.triangles) - 1)));
       const Vec3 hit = MulAdd(t, dir, LoadVec3(s.o_x, s.o_y, s.o_z, i));
@@ -30,11 +32,11 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
     }
     const VF cosine = hn::Neg(Dot(n, dir));
 
-    const VI light = hn::BitCast(di, hn::GatherIndex(DU(), plan.prim_light.data(), prim));
-    const float* table = plan.light_table.data();
-    const VI entry = hn::ShiftLeft<2>(light);
-    const Vec3 radiance = GatherVec3(table, entry);
-    const VF area = hn::GatherIndex(d, table + 3, entry);
+    uint32_t light[hn::MaxLanes(d)];
+    for (size_t k = 0; k < hn::Lanes(d); ++k) light[k] = plan.prim_light[s.prim[i + k]];
+    Vec3 radiance;
+    VF area;
+    LaneRecords(plan.light_table.data(), 4, light).Get4(0, radiance.x, radiance.y, radiance.z, area);
 
     const VF pdf = hn::Load(d, s.pdf + i);
     const MF alone = hn::Eq(pdf, zero);  // no light sample could have made this path
