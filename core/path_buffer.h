@@ -16,7 +16,6 @@ class PathBuffer {
   PathState& state() { return state_; }
   const PathState& state() const { return state_; }
   uint32_t capacity() const { return capacity_; }
-  uint32_t padded_capacity() const { return padded_; }
 
  private:
   uint32_t capacity_;

@@ -310,6 +310,7 @@ TEST_CASE("command line: stats.json adds up") {
   CHECK(stats["samples"] == 24 * 18 * 4);
   const auto& rays = stats["rays"];
   CHECK(rays["camera"] == stats["samples"]);
+  CHECK(stats["plan"].size() > 2);
   CHECK(rays["total"].get<uint64_t>() ==
         rays["camera"].get<uint64_t>() + rays["bounce"].get<uint64_t>() + rays["shadow"].get<uint64_t>());
   CHECK(rays["bounce"].get<uint64_t>() > 0);

@@ -124,7 +124,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
                  {"seed", std::to_string(o.settings.seed)}});
     return true;
   });
-  const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line};
+  const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line, plan.reasons};
   if (!o.stats.empty()) write_file(o.stats, stats_json(report));
 
   progress.clear();

@@ -70,6 +70,7 @@ std::string stats_json(const RenderReport& r) {
       {"invalid_samples", s.invalid_samples},
       {"paths_by_length", s.paths_by_length},
   };
+  json["plan"] = r.plan_reasons;
   json["stages"] = nlohmann::ordered_json::array();
   for (const StageStats& stage : s.stages) {
     json["stages"].push_back({{"name", stage.name},
