@@ -1,6 +1,6 @@
 #include "core/film.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace lanewise {
 
@@ -29,11 +29,18 @@ std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Wind
   return counts;
 }
 
-bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance) {
+double mean_luminance(const PixelSums& sums, uint32_t samples) { return luminance(sums.r, sums.g, sums.b) / samples; }
+
+double luminance_variance(const PixelSums& sums, uint32_t samples) {
+  if (samples < 2) return 0;
   const double n = samples;
-  const double mean = luminance(sums.r, sums.g, sums.b) / n;
-  const double variance = samples > 1 ? std::max(0.0, sums.y2 - n * mean * mean) / (n - 1) : 0.0;
-  return 1.96 * std::sqrt(variance / n) <= tolerance * mean;
+  const double squares = sums.dy2 - sums.dy * sums.dy / n;
+  return squares < 0 ? 0 : squares / (n - 1);  // a NaN stays one
+}
+
+bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance) {
+  const double error = std::sqrt(luminance_variance(sums, samples) / samples);
+  return 1.96 * error <= tolerance * mean_luminance(sums, samples);
 }
 
 }  // namespace lanewise

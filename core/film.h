@@ -1,7 +1,6 @@
 // The film: every pixel's sums over its samples, and what can be said of them.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -22,8 +21,13 @@ struct Film {
 Image develop(const Film& film, uint32_t width, const Window& window);
 std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Window& window);
 
-// Whether a pixel's 95% confidence interval is within the tolerance: 1.96 sigma / sqrt(n) <= tolerance * mean, of
-// luminance, with the sample variance (0 for n = 1).
+// Of a pixel's luminance: the mean of its samples, and their variance sigma^2 (unbiased; 0 for one sample). samples > 0.
+double mean_luminance(const PixelSums& sums, uint32_t samples);
+double luminance_variance(const PixelSums& sums, uint32_t samples);
+
+// The rule of -a: whether a pixel's 95% confidence interval is within the tolerance, 1.96 sigma / sqrt(n) <= tolerance * mean.
+// It looks at the samples that the picture is made of, so it stops sooner where they happen to be dark: biased low, by as
+// much as tolerance^2 on skewed pixels. A NaN never converges.
 bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance);
 
 }  // namespace lanewise

@@ -14,6 +14,7 @@
 #include "core/file.h"
 #include "core/image_exr.h"
 #include "core/image_hdr.h"
+#include "core/srgb.h"
 #include "core/types.h"
 
 #pragma GCC diagnostic push
@@ -58,10 +59,6 @@ void check_size(uint64_t width, uint64_t height) {
     throw Error("absurd size " + std::to_string(width) + "x" + std::to_string(height));
   }
 }
-
-// IEC 61966-2-1, both ways on [0, 1].
-double srgb_from_linear(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
-double linear_from_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 void append_to_string(void* context, void* data, int size) {
   static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<size_t>(size));

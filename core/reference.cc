@@ -3,10 +3,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/film.h"
 #include "core/render.h"
+#include "core/schedule.h"
 #include "core/stats.h"
-#include "core/workers.h"
 #include "kernels/reference/emission.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
@@ -87,26 +86,18 @@ bool is_valid(const Path<T>& p) {
   return valid(p.L_r) && valid(p.L_g) && valid(p.L_b);
 }
 
+// Adds one sample to the pixel's sums.
 template <class T>
-void sample_pixel(const Plan& plan, uint32_t pixel, Film& film, Profile& profile) {
-  const Settings& settings = plan.settings;
-  PixelSums& sums = film.sums[pixel];
-  const uint32_t batch = settings.adaptive_batch > 0 ? settings.adaptive_batch : settings.spp;
-  for (uint32_t& n = film.samples[pixel]; n < settings.spp;) {
-    Path<T> p;
-    p.pixel = pixel;
-    p.sample = n++;
-    trace(plan, p, profile);
-    if (is_valid(p)) {
-      const double y = luminance(p.L_r, p.L_g, p.L_b);
-      sums.r += p.L_r;
-      sums.g += p.L_g;
-      sums.b += p.L_b;
-      sums.y2 += y * y;
-    } else {
-      ++profile.invalid_samples;
-    }
-    if (n % batch == 0 && n < settings.spp && has_converged(sums, n, settings.adaptive_tolerance)) break;
+void sample_pixel(const Plan& plan, uint32_t pixel, uint32_t sample, PixelSums& sums, Profile& profile) {
+  Path<T> p;
+  p.pixel = pixel;
+  p.sample = sample;
+  trace(plan, p, profile);
+  if (is_valid(p)) {
+    sums.add(p.L_r, p.L_g, p.L_b);
+  } else {
+    sums.add(0, 0, 0);
+    ++profile.invalid_samples;
   }
 }
 
@@ -115,29 +106,20 @@ void sample_pixel(const Plan& plan, uint32_t pixel, Film& film, Profile& profile
 template <class T>
 RenderResult render_reference(const Plan& plan, const std::function<void(const Progress&)>& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const Settings& settings = plan.settings;
-  const Window window = settings.window();
-  const uint32_t threads = thread_count(settings, window.height);
-  Film film(size_t{settings.width} * settings.height);
+  const uint32_t threads = thread_count(plan.settings);
   std::vector<Profile> profiles(threads);
-  run_workers(
-      threads, window.height,
-      [&](size_t row, uint32_t worker) {
-        const uint64_t before = profiles[worker].rays();
-        for (uint32_t x = window.x; x < window.x + window.width; ++x) {
-          sample_pixel<T>(plan, (window.y + static_cast<uint32_t>(row)) * settings.width + x, film, profiles[worker]);
-        }
-        return profiles[worker].rays() - before;
-      },
-      progress);
+  const auto draw = [&](const std::vector<uint32_t>& pixels, uint32_t first, uint32_t count, PixelSums* sums,
+                        uint32_t worker) {
+    Profile& profile = profiles[worker];
+    const uint64_t before = profile.rays();
+    for (const uint32_t pixel : pixels) {
+      for (uint32_t i = 0; i < count; ++i) sample_pixel<T>(plan, pixel, first + i, sums[pixel], profile);
+    }
+    return profile.rays() - before;
+  };
+  Exposure exposure = expose(plan.settings, threads, draw, progress);
 
-  Profile profile;
-  for (const Profile& p : profiles) profile.add(p);
-  RenderResult result{develop(film, settings.width, window), sample_counts(film, settings.width, window),
-                      make_stats(profile)};
-  result.stats.threads = threads;
-  result.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return make_result(std::move(exposure), profiles, std::chrono::steady_clock::now() - start);
 }
 
 template RenderResult render_reference<float>(const Plan&, const std::function<void(const Progress&)>&);

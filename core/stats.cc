@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 namespace lanewise {
+
+namespace {
 
 RenderStats make_stats(const Profile& profile) {
   RenderStats stats;
@@ -21,9 +24,25 @@ RenderStats make_stats(const Profile& profile) {
   return stats;
 }
 
-uint32_t thread_count(const Settings& settings, size_t items) {
-  const uint32_t asked = settings.threads > 0 ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
-  return static_cast<uint32_t>(std::clamp<size_t>(items, 1, asked));
+}  // namespace
+
+uint32_t thread_count(const Settings& settings) {
+  return settings.threads > 0 ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
+RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles,
+                         std::chrono::duration<double> elapsed) {
+  Profile all;
+  uint32_t threads = 0;
+  for (const Profile& profile : profiles) {
+    all.add(profile);
+    threads += profile.samples > 0;
+  }
+  RenderResult result{std::move(exposure.image), std::move(exposure.samples), make_stats(all)};
+  result.stats.converged = exposure.converged;
+  result.stats.threads = threads;
+  result.stats.seconds = elapsed.count();
+  return result;
 }
 
 }  // namespace lanewise

@@ -1,5 +1,6 @@
 #include "core/workers.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -13,6 +14,7 @@ namespace lanewise {
 void run_workers(uint32_t threads, size_t items, const std::function<uint64_t(size_t, uint32_t)>& body,
                  const std::function<void(const Progress&)>& progress) {
   constexpr auto kBetweenReports = std::chrono::milliseconds(100);
+  threads = static_cast<uint32_t>(std::clamp<size_t>(items, 1, threads));
   std::atomic<size_t> next{0}, done{0};
   std::atomic<uint64_t> rays{0};
   std::mutex mutex;  // guards the two below

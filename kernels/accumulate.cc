@@ -37,12 +37,7 @@ uint32_t Accumulate(const PathState& s, PixelSums* film) {
     PixelSums& pixel = film[batch.pixels[pixel_index]];
     PixelSums sums = pixel;
     for (; sample < batch.samples && i < batch.paths; ++sample, ++i) {
-      const double r = s.result_r[i], g = s.result_g[i], b = s.result_b[i];
-      const double y = luminance(r, g, b);
-      sums.r += r;
-      sums.g += g;
-      sums.b += b;
-      sums.y2 += y * y;
+      sums.add(s.result_r[i], s.result_g[i], s.result_b[i]);
     }
     pixel = sums;
   }

@@ -104,14 +104,26 @@ void roulette(const Plan& plan, const PathState& s, Range range);
 constexpr uint32_t kRouletteBounce = 4;
 constexpr float kMaxSurvival = 0.95f;
 
-// A pixel's sums over its samples.
-struct PixelSums {
-  double r = 0, g = 0, b = 0;
-  double y2 = 0;  // of squared luminance
-};
-
 // Rec. 709 luminance of linear RGB.
 constexpr double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
+
+// A pixel's sums over its samples. Luminance is summed by its distance from the first sample's, which leaves the variance of
+// bright calm pixels nothing to cancel (Chan, Golub & LeVeque, The American Statistician 37(3), 1983).
+struct PixelSums {
+  double r = 0, g = 0, b = 0;
+  double y_first = -1;     // luminance of the first sample; -1: there is none yet
+  double dy = 0, dy2 = 0;  // of luminance - y_first, and of its square
+
+  void add(double red, double green, double blue) {
+    const double y = luminance(red, green, blue);
+    if (y_first < 0) y_first = y;
+    r += red;
+    g += green;
+    b += blue;
+    dy += y - y_first;
+    dy2 += (y - y_first) * (y - y_first);
+  }
+};
 
 // Adds the batch's samples to their pixels, film[pixel], each pixel's in the order of its samples: so the sums have the
 // same bits however samples are cut into waves. A sample with a NaN, infinite or negative channel counts as black.

@@ -40,10 +40,9 @@ TEST_CASE("accumulate: the same bits however samples are cut into waves; invalid
 
   std::vector<PixelSums> want(kPixels);
   for (uint32_t j = 0; j < kTotal; ++j) {
-    if (j == 20 || j == 40 || j == 60) continue;
-    PixelSums& sums = want[pixels[j / kSamples]];
-    const double r = radiance[3 * j], g = radiance[3 * j + 1], b = radiance[3 * j + 2];
-    sums.r += r, sums.g += g, sums.b += b, sums.y2 += luminance(r, g, b) * luminance(r, g, b);
+    const bool invalid = j == 20 || j == 40 || j == 60;
+    const float* rgb = &radiance[3 * j];
+    invalid ? want[pixels[j / kSamples]].add(0, 0, 0) : want[pixels[j / kSamples]].add(rgb[0], rgb[1], rgb[2]);
   }
   test::for_each_target([&](const char* target) {
     CAPTURE(target);
@@ -67,7 +66,8 @@ TEST_CASE("accumulate: the same bits however samples are cut into waves; invalid
       CHECK(invalid == 3);
       bool same = true;
       for (uint32_t i = 0; i < kPixels; ++i) {
-        same &= film[i].r == want[i].r && film[i].g == want[i].g && film[i].b == want[i].b && film[i].y2 == want[i].y2;
+        same &= film[i].r == want[i].r && film[i].g == want[i].g && film[i].b == want[i].b &&
+                film[i].dy == want[i].dy && film[i].dy2 == want[i].dy2;
       }
       CHECK(same);
     }
@@ -93,17 +93,23 @@ TEST_CASE("count_shadow_rays: paths whose light sample is worth a ray") {
 
 TEST_CASE("film: the mean, and when a pixel has converged") {
   Film film(2);
-  film.sums[0] = {2, 4, 6, 0};
+  film.sums[0].add(0.5, 2, 3);
+  film.sums[0].add(1.5, 2, 3);
   film.samples[0] = 2;
   const Image image = develop(film, 2, {0, 0, 2, 1});
   CHECK(image.rgb[0] == 1);
   CHECK(image.rgb[2] == 3);
   CHECK(image.rgb[3] == 0);
 
-  // 100 samples of luminance 1 +- 1: sigma / sqrt(n) is 0.1.
-  const PixelSums noisy{100, 100, 100, 200};
+  // 100 samples of luminance 1 +- 1: sigma / sqrt(n) is 0.1005.
+  PixelSums noisy;
+  for (int i = 0; i < 50; ++i) noisy.add(0, 0, 0), noisy.add(2, 2, 2);
+  CHECK(mean_luminance(noisy, 100) == doctest::Approx(1));
+  CHECK(luminance_variance(noisy, 100) == doctest::Approx(100.0 / 99));
   CHECK(has_converged(noisy, 100, 0.2));
   CHECK_FALSE(has_converged(noisy, 100, 0.19));
+  noisy.r = NAN;
+  CHECK_FALSE(has_converged(noisy, 100, 10));
   CHECK(has_converged(PixelSums{}, 4, 0.05));  // black so far: 0 <= 0
 }
 

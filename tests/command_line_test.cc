@@ -138,6 +138,13 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
       {{"-a", "64", "nan"}, "--adaptive"},
       {{"-a", "64", "-0.1"}, "--adaptive"},
       {{"-a", "64"}, "--adaptive"},
+      {{"--noise", "0"}, "--noise"},
+      {{"--noise", "nan"}, "--noise"},
+      {{"--noise", "0.1", "-a", "64", "0.1"}, "--noise contradicts --adaptive"},
+      {{"--noise", "0.1", "-s", "31"}, "--noise: needs --spp (-s) of at least 32"},
+      {{"--rate", "rate.txt"}, "rate.txt"},
+      {{"--rate", "old.png"}, "--rate: would overwrite old.png"},
+      {{"--rate", "rate.png", "--stats", "rate.png"}, "--stats: would overwrite rate.png"},
       {{"--seed", "-1"}, "--seed"},
       {{"--seed", "18446744073709551616"}, "--seed"},
       {{"--wave", "0"}, "--wave"},
@@ -234,6 +241,32 @@ TEST_CASE("command line: -H is --direct hemisphere, and the last of two equal fl
   CHECK(hemisphere == picture_of(folder, {box(), "--direct", "light", "--direct", "hemisphere", "-H"}));
   CHECK(hemisphere != picture_of(folder, {box()}));
   CHECK(picture_of(folder, {box(), "--seed", "5", "--seed", "6"}) == picture_of(folder, {box(), "--seed", "6"}));
+}
+
+TEST_CASE("command line: --rate shows the samples of each pixel") {
+  if (nothing_to_test()) return;
+  const TemporaryFolder folder;
+  for (const Arguments& rule : {Arguments{"--noise", "0.3", "-s", "4096"}, Arguments{"-s", "64", "-a", "16", "0.5"}}) {
+    for (const char* name : {"rate.pfm", "rate.png"}) {
+      const ProcessResult result =
+          render_small(folder, Arguments{box(), "--rate", name, "--stats", "stats.json"} + rule);
+      CAPTURE(result.err);
+      REQUIRE(result.exit_code == 0);
+    }
+    const Image counts = read_image(folder.file("rate.pfm")), colours = read_image(folder.file("rate.png"));
+    const auto stats = nlohmann::json::parse(test::read_text(folder.file("stats.json")));
+    double samples = 0;
+    for (const float n : counts.rgb) samples += n / 3;
+    CHECK(samples == doctest::Approx(stats["samples"].get<double>()));
+    CHECK(stats["converged"].get<double>() > 0);
+    const auto fewest = std::min_element(counts.rgb.begin(), counts.rgb.end());
+    const auto most = std::max_element(counts.rgb.begin(), counts.rgb.end());
+    REQUIRE(*fewest < *most);
+    const float* dark = &colours.rgb[static_cast<size_t>(fewest - counts.rgb.begin())];
+    const float* bright = &colours.rgb[static_cast<size_t>(most - counts.rgb.begin())];
+    CHECK(dark[1] < 0.01f);
+    CHECK(bright[1] > 0.7f);
+  }
 }
 
 TEST_CASE("command line: every format, by extension, and a default beside the caller") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/image_compare.h"
 #include "tests/kernel_harness.h"
 #include "tests/test_scene.h"
 
@@ -84,10 +85,10 @@ TEST_CASE("render: SIMD paths are the scalar renderer's paths, in every mode") {
 }
 
 TEST_CASE("render: the same bits for any number of threads and any wave") {
-  for (const uint32_t adaptive : {0u, 4u}) {
-    Settings settings = small();
-    settings.adaptive_batch = adaptive;
-    settings.adaptive_tolerance = 0.3;
+  Settings adaptive = small(), noise = small();
+  adaptive.adaptive_batch = 4, adaptive.adaptive_tolerance = 0.3;
+  noise.spp = 200, noise.noise = 0.3;
+  for (Settings settings : {small(), adaptive, noise}) {
     const RenderResult want = render(make_plan(test::test_scene(), settings));
     for (const uint32_t wave : {16u, 256u, 8192u}) {
       for (const uint32_t threads : {1u, 2u, 5u}) {
@@ -112,23 +113,33 @@ TEST_CASE("render: FMA targets agree bit for bit") {
   });
 }
 
-TEST_CASE("render: a crop's pixels are the whole picture's") {
+TEST_CASE("render: a crop's pixels are the whole picture's, also where blocks decide with their neighbours") {
+  for (const double noise : {0.0, 0.3}) {
+    Settings settings = small();
+    if (noise > 0) settings.noise = noise, settings.spp = 200;
+    const RenderResult whole = render(make_plan(test::test_scene(), settings));
+    settings.crop = {7, 11, 20, 9};
+    const RenderResult part = render(make_plan(test::test_scene(), settings));
+    REQUIRE(part.image.width == 20);
+    REQUIRE(part.image.height == 9);
+    REQUIRE(part.samples.size() == 20 * 9);
+    bool same = true;
+    for (uint32_t y = 0; y < 9; ++y) {
+      for (uint32_t x = 0; x < 20; ++x) {
+        for (int k = 0; k < 3; ++k) same &= part.image.pixel(x, y)[k] == whole.image.pixel(x + 7, y + 11)[k];
+        same &= part.samples[y * 20 + x] == whole.samples[(y + 11) * settings.width + x + 7];
+      }
+    }
+    CHECK(same);
+  }
+}
+
+TEST_CASE("render: a crop draws no pixel but its own, and the scalar renderer crops alike") {
   Settings settings = small();
-  const RenderResult whole = render(make_plan(test::test_scene(), settings));
   settings.crop = {7, 11, 20, 9};
   const Plan plan = make_plan(test::test_scene(), settings);
   const RenderResult part = render(plan), scalar = render_reference<float>(plan);
-  REQUIRE(part.image.width == 20);
-  REQUIRE(part.image.height == 9);
-  CHECK(part.samples.size() == 20 * 9);
   CHECK(part.stats.samples == 20 * 9 * settings.spp);
-  bool same = true;
-  for (uint32_t y = 0; y < 9; ++y) {
-    for (uint32_t x = 0; x < 20; ++x) {
-      for (int k = 0; k < 3; ++k) same &= part.image.pixel(x, y)[k] == whole.image.pixel(x + 7, y + 11)[k];
-    }
-  }
-  CHECK(same);
   CHECK(differing(scalar.image, part.image) < 0.02);
 }
 
@@ -176,6 +187,28 @@ TEST_CASE("render: -a takes fewer samples where the picture is calm") {
   CHECK(total == result.stats.samples);
   CHECK(total < 256 * result.samples.size());
   CHECK(total > 16 * result.samples.size());
+}
+
+TEST_CASE("render: --noise comes to the noise that it is asked for, in both renderers") {
+  Settings settings = small();
+  settings.spp = 4096, settings.max_depth = 3;
+  Settings exact = settings;
+  exact.seed = 1;
+  const Image want = render(make_plan(test::test_box(), exact)).image;
+  uint64_t before = 0;
+  for (const double noise : {0.2, 0.1}) {
+    settings.noise = noise;
+    const Plan plan = make_plan(test::test_box(), settings);
+    const RenderResult got = render(plan);
+    CAPTURE(noise);
+    CHECK(compare_images(got.image, want).mrse < noise * noise);
+    CHECK(compare_images(got.image, want).mrse > noise * noise / 10);
+    CHECK(got.stats.converged > 0.9);
+    CHECK(std::accumulate(got.samples.begin(), got.samples.end(), uint64_t{0}) == got.stats.samples);
+    CHECK(got.stats.samples > 2 * before);  // 4 times in theory
+    before = got.stats.samples;
+    if (noise > 0.1) CHECK(differing(render_reference<float>(plan).image, got.image) < 0.05);
+  }
 }
 
 TEST_CASE("render: the glass sphere's shadow is black at -m 2 where nothing but light through glass could reach") {

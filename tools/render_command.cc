@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/file.h"
 #include "core/image_io.h"
@@ -14,6 +16,7 @@
 #include "tools/commands.h"
 #include "tools/flags.h"
 #include "tools/progress.h"
+#include "tools/rate_picture.h"
 #include "tools/render_options.h"
 #include "tools/render_report.h"
 #include "tools/version.h"
@@ -25,7 +28,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  lanewise render box.dae                                  a quick look, to box.png\n"
     "  lanewise render box.dae -s 1024 -f box.exr               a clean picture, in floats\n"
-    "  lanewise render box.dae -r 1920 1080 -a 64 0.02 -s 4096  samples where the noise is\n"
+    "  lanewise render box.dae -r 1920 1080 --noise 0.05        samples where the noise is\n"
     "  lanewise render box.dae --metal gold --alpha 0.05        another material";
 
 // Seconds that f takes, added to `seconds`.
@@ -37,16 +40,27 @@ auto timed(double& seconds, F f) {
   return result;
 }
 
-// What can be known to fail before the work begins.
+// What can be known to fail before the work begins. No output may overwrite the scene or another output.
 void check_outputs(const RenderOptions& o) {
   check_image_extension(o.output);
   check_image_writable(o.output);
-  if (o.stats.empty()) return;
-  check_writable(o.stats);
-  for (const std::string& other : {o.scene, o.output}) {
-    if (std::filesystem::weakly_canonical(o.stats) == std::filesystem::weakly_canonical(other)) {
-      throw UsageError("--stats: would overwrite " + other);
+  std::vector<std::string> taken = {o.scene, o.output};
+  const auto claim = [&](const char* flag, const std::string& path) {
+    for (const std::string& other : taken) {
+      if (std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(other)) {
+        throw UsageError(std::string(flag) + ": would overwrite " + other);
+      }
     }
+    taken.push_back(path);
+  };
+  if (!o.rate.empty()) {
+    check_image_extension(o.rate);
+    check_image_writable(o.rate);
+    claim("--rate", o.rate);
+  }
+  if (!o.stats.empty()) {
+    check_writable(o.stats);
+    claim("--stats", o.stats);
   }
 }
 
@@ -124,6 +138,9 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
                  {"seed", std::to_string(o.settings.seed)}});
     return true;
   });
+  if (!o.rate.empty()) {
+    write_image(o.rate, rate_picture(o.rate, result.samples, result.image.width, result.image.height));
+  }
   const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line, plan.reasons};
   if (!o.stats.empty()) write_file(o.stats, stats_json(report));
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/dimensions.h"
+#include "core/noise_film.h"
 #include "core/types.h"
 #include "tools/flags.h"
 
@@ -13,6 +14,7 @@ namespace {
 constexpr uint64_t kMaxCount = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t kMaxSide = 65536;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
+constexpr uint32_t kNoiseSpp = 65536;  // -s where --noise is given without it
 
 // Flags of the course's path tracer that are understood, so that its command lines fail with a reason.
 constexpr struct {
@@ -58,6 +60,12 @@ void add_sampling_flags(CLI::App& app, RenderOptions& o) {
       ->check(whole_number(1, kMaxCount).application_index(0))
       ->check(real_number(0, 10).application_index(1))
       ->type_name("BATCH TOL");
+  app.add_option("--noise", o.settings.noise,
+                 "Stop a pixel where its standard error is the share X of its luminance; unbiased. -s is then the most "
+                 "samples, by default " +
+                     std::to_string(kNoiseSpp))
+      ->check(real_number(0, 10))
+      ->type_name("X");
   app.add_option("--seed", o.settings.seed, "Seed of the random numbers")
       ->check(whole_number(0, std::numeric_limits<uint64_t>::max()))
       ->type_name("N")
@@ -127,6 +135,9 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("-f,--output", o.output, "The picture: .png, .exr, .pfm or .hdr")
       ->type_name("FILE")
       ->default_str("the scene's name.png, here");
+  app.add_option("--rate", o.rate,
+                 "Picture of the samples that each pixel took: colours in a .png, their number in an .exr or .pfm")
+      ->type_name("FILE");
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
   app.add_flag("-q,--quiet", o.quiet, "No progress, no summary");
 }
@@ -188,6 +199,13 @@ void complete(RenderOptions& o, const CLI::App& app) {
     o.settings.crop = {x, y, width, height};
   }
   std::tie(o.settings.adaptive_batch, o.settings.adaptive_tolerance) = o.adaptive;
+  if (o.settings.noise > 0) {
+    if (o.settings.adaptive_batch > 0) throw UsageError("--noise contradicts --adaptive (-a)");
+    if (app.count("--spp") == 0) o.settings.spp = kNoiseSpp;
+    if (o.settings.spp < 2 * NoiseFilm::kFirstSamples) {
+      throw UsageError("--noise: needs --spp (-s) of at least " + std::to_string(2 * NoiseFilm::kFirstSamples));
+    }
+  }
   if (o.output.empty()) o.output = default_output(o.scene);
 }
 

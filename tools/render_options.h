@@ -20,6 +20,7 @@ struct RenderOptions {
   std::string output;       // the picture's file; complete() fills it in
   std::string camera_file;  // empty: the scene's camera
   std::string stats;        // the statistics' file; empty: none
+  std::string rate;         // the file of the picture of sample counts; empty: none
   Settings settings;
   Normals normals = Normals::kFile;
   std::string isa;  // empty: the best here

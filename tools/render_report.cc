@@ -35,6 +35,13 @@ std::string short_count(double n) {
   return text;
 }
 
+// Three digits, and never "100" for less.
+std::string short_number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x > 99.9 && x < 100 ? 99.9 : x);
+  return text;
+}
+
 std::string short_seconds(double seconds) {
   char text[32];
   std::snprintf(text, sizeof text, seconds < 10 ? "%.2f s" : "%.1f s", seconds);
@@ -68,6 +75,7 @@ std::string stats_json(const RenderReport& r) {
       {"rays_per_second", rays_per_second(r)},
       {"peak_rss_bytes", peak_rss_bytes()},
       {"invalid_samples", s.invalid_samples},
+      {"converged", s.converged},
       {"paths_by_length", s.paths_by_length},
   };
   json["plan"] = r.plan_reasons;
@@ -89,13 +97,20 @@ std::string summary(const RenderReport& r) {
   const uint64_t pixels = uint64_t{settings.window().width} * settings.window().height;
   std::string text = r.options.scene + " -> " + r.options.output + "\n";
   text += std::to_string(settings.window().width) + " x " + std::to_string(settings.window().height) + ", ";
-  if (settings.adaptive_batch > 0) {
+  const bool adaptive = settings.adaptive_batch > 0 || settings.noise > 0;
+  if (adaptive) {
     char mean[32];
     std::snprintf(mean, sizeof mean, "%.1f", static_cast<double>(s.samples) / static_cast<double>(pixels));
     text += std::string(mean) + " of at most ";
   }
   text += count_of(settings.spp, "sample") + " per pixel, depth " + std::to_string(settings.max_depth) + ", " +
           count_of(s.threads, "thread") + ", " + r.isa + "\n";
+  if (adaptive) {
+    const std::string aim = settings.noise > 0
+                                ? "standard error of " + short_number(100 * settings.noise) + " %"
+                                : "tolerance of " + short_number(100 * settings.adaptive_tolerance) + " %";
+    text += aim + " reached in " + short_number(100 * s.converged) + " % of the pixels\n";
+  }
   text += "load " + short_seconds(r.seconds.load) + ", plan " + short_seconds(r.seconds.plan) + ", render " +
           short_seconds(r.seconds.render) + ", write " + short_seconds(r.seconds.write) + "\n";
   text += short_count(static_cast<double>(s.samples)) + " samples, " + short_count(static_cast<double>(total_rays(s))) +

@@ -1,0 +1,157 @@
+#include "core/noise_film.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/film.h"
+
+namespace lanewise {
+
+NoiseFilm::NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint32_t max_samples)
+    : width_(width),
+      height_(height),
+      window_(window),
+      noise_(noise),
+      max_drawn_(max_samples / kHalves),
+      count_(std::min(kFirstSamples, max_drawn_)) {
+  // The window's blocks, and those around them.
+  const auto reach = [](uint32_t begin, uint32_t size, uint32_t end, uint32_t& first, uint32_t& blocks) {
+    first = begin / kBlock - std::min(begin / kBlock, 1u);
+    blocks = std::min((begin + size - 1) / kBlock + 2, (end + kBlock - 1) / kBlock) - first;
+  };
+  reach(window.x, window.width, width, blocks_.x, blocks_.width);
+  reach(window.y, window.height, height, blocks_.y, blocks_.height);
+  const size_t pixels = size_t{width} * height, blocks = size_t{blocks_.width} * blocks_.height;
+  for (Half& half : halves_) {
+    half.sums.resize(pixels);
+    half.estimate.resize(pixels);
+    half.samples.resize(blocks);
+    half.converged.resize(blocks);
+    half.ended.resize(blocks);
+  }
+  left_ = static_cast<double>(kHalves * blocks * kBlock * kBlock) * count_;
+}
+
+template <class F>
+void NoiseFilm::for_each_pixel(uint32_t block, const F& f) const {
+  const uint32_t x = (blocks_.x + block % blocks_.width) * kBlock, y = (blocks_.y + block / blocks_.width) * kBlock;
+  for (uint32_t j = y; j < std::min(y + kBlock, height_); ++j) {
+    for (uint32_t i = x; i < std::min(x + kBlock, width_); ++i) f(i, j);
+  }
+}
+
+std::vector<uint32_t> NoiseFilm::drawing(uint32_t half) const {
+  std::vector<uint32_t> pixels;
+  for (uint32_t b = 0; b < halves_[half].samples.size(); ++b) {
+    if (halves_[half].draws(b)) for_each_pixel(b, [&](uint32_t x, uint32_t y) { pixels.push_back(y * width_ + x); });
+  }
+  return pixels;
+}
+
+double NoiseFilm::excess(const Half& half, uint32_t block) const {
+  // Errors are taken relative to the mean of a quarter of the block: a single pixel's would shrink the very spike that makes
+  // its variance, and the whole block's lose the dark side of an edge.
+  struct Quarter {
+    double pixels = 0, luminance = 0, variance = 0;
+  } quarters[4];
+  const uint32_t n = half.samples[block];
+  for_each_pixel(block, [&](uint32_t x, uint32_t y) {
+    Quarter& q = quarters[y / (kBlock / 2) % 2 * 2 + x / (kBlock / 2) % 2];
+    const PixelSums& sums = half.sums[size_t{y} * width_ + x];
+    q.pixels += 1;
+    q.luminance += mean_luminance(sums, n);
+    q.variance += luminance_variance(sums, n);
+  });
+  double pixels = 0, squares = 0;
+  for (const Quarter& q : quarters) {
+    if (q.pixels == 0) continue;
+    const double allowed = noise_ * (q.luminance / q.pixels + kLeastLuminance);
+    pixels += q.pixels;
+    squares += q.variance / (double{kHalves} * n) / (allowed * allowed);
+  }
+  return std::sqrt(squares / pixels);
+}
+
+bool NoiseFilm::converged_around(const Half& half, uint32_t block) const {
+  const uint32_t x = block % blocks_.width, y = block / blocks_.width;
+  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, blocks_.height); ++j) {
+    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, blocks_.width); ++i) {
+      if (!half.converged[j * blocks_.width + i]) return false;
+    }
+  }
+  return true;
+}
+
+void NoiseFilm::end_round() {
+  drawn_ += count_;
+  const bool last = drawn_ >= max_drawn_;
+  const uint32_t blocks = blocks_.width * blocks_.height;
+  left_ = 0;
+  for (Half& half : halves_) {
+    for (uint32_t b = 0; b < blocks; ++b) {
+      if (!half.draws(b)) continue;
+      half.samples[b] = drawn_;
+      const double e = excess(half, b);
+      if (e <= 1) half.converged[b] = 1;  // a NaN has not converged
+      double pixels = 0;
+      for_each_pixel(b, [&](uint32_t, uint32_t) { pixels += 1; });
+      total_ += pixels * count_;
+      const double wanted = std::min<double>(e > 1 ? e * e * drawn_ : drawn_, max_drawn_);
+      left_ += pixels * (wanted - drawn_);
+    }
+  }
+  bool draws = false;
+  for (uint32_t h = 0; h < kHalves; ++h) {
+    Half& half = halves_[h];
+    for (uint32_t b = 0; b < blocks; ++b) {
+      if (!half.ended[b] && (last || converged_around(halves_[1 - h], b))) {
+        half.ended[b] = 1;
+        for_each_pixel(b, [&](uint32_t x, uint32_t y) {
+          const size_t i = size_t{y} * width_ + x;
+          half.estimate[i] = {half.sums[i].r / drawn_, half.sums[i].g / drawn_, half.sums[i].b / drawn_};
+        });
+      }
+      draws |= half.draws(b);
+    }
+  }
+  // A quarter more each round: few decisions, and little drawn in vain.
+  count_ = draws && !last ? std::min(std::max(4u, drawn_ / 16 * 4), max_drawn_ - drawn_) : 0;
+}
+
+Image NoiseFilm::develop() const {
+  Image image(window_.width, window_.height);
+  for (uint32_t y = 0; y < window_.height; ++y) {
+    for (uint32_t x = 0; x < window_.width; ++x) {
+      const size_t i = size_t{window_.y + y} * width_ + window_.x + x;
+      for (size_t k = 0; k < 3; ++k) {
+        image.pixel(x, y)[k] = static_cast<float>((halves_[0].estimate[i][k] + halves_[1].estimate[i][k]) / kHalves);
+      }
+    }
+  }
+  return image;
+}
+
+std::vector<uint32_t> NoiseFilm::sample_counts() const {
+  std::vector<uint32_t> counts;
+  for (uint32_t y = window_.y; y < window_.y + window_.height; ++y) {
+    for (uint32_t x = window_.x; x < window_.x + window_.width; ++x) {
+      const size_t b = size_t{y / kBlock - blocks_.y} * blocks_.width + x / kBlock - blocks_.x;
+      counts.push_back(halves_[0].samples[b] + halves_[1].samples[b]);
+    }
+  }
+  return counts;
+}
+
+double NoiseFilm::converged() const {
+  uint32_t all = 0, converged = 0;
+  for (uint32_t y = window_.y / kBlock; y * kBlock < window_.y + window_.height; ++y) {
+    for (uint32_t x = window_.x / kBlock; x * kBlock < window_.x + window_.width; ++x) {
+      const size_t b = size_t{y - blocks_.y} * blocks_.width + x - blocks_.x;
+      converged += halves_[0].converged[b] && halves_[1].converged[b];
+      ++all;
+    }
+  }
+  return static_cast<double>(converged) / all;
+}
+
+}  // namespace lanewise

@@ -1,0 +1,79 @@
+// The film of --noise: as many samples as the noise demands, without the bias of stopping on a lucky sum.
+//
+// A pixel's samples come in two independent halves. Each half's estimate ends when the *other* half says so, and the picture
+// is the mean of the two estimates. How many samples an estimate has is thus independent of their values, and so its
+// expectation is the pixel's true value, whatever the rule: the bias is exactly 0. What a half says is said of blocks of
+// pixels, all of whose samples see more than one pixel's, and a block goes on as long as any block around it does: so the rule
+// does not stop where a rare bright path has not been met yet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/image.h"
+#include "core/settings.h"
+#include "kernels/kernels.h"
+
+namespace lanewise {
+
+class NoiseFilm {
+ public:
+  static constexpr uint32_t kHalves = 2;
+  static constexpr uint32_t kFirstSamples = 16;    // of each half before anything is decided
+  static constexpr uint32_t kBlock = 8;            // side of a block in pixels, on a grid from the picture's corner
+  static constexpr double kLeastLuminance = 0.01;  // added to means, so that black blocks end: as in the measure MRSE
+
+  // Draws the blocks that can have a say in the window's pixels, of a picture of width x height. noise: the standard error
+  // that luminance may keep, relative to itself + kLeastLuminance, root mean square over a block. max_samples: of a pixel, at
+  // least 2 kFirstSamples; odd ones are rounded down.
+  NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint32_t max_samples);
+
+  // The round to draw now: of every pixel of the list drawing(half), count() samples from number first(half) on, added to
+  // sums(half)[pixel]. Then end_round(). When count() is 0 there is no more.
+  uint32_t count() const { return count_; }
+  uint32_t first(uint32_t half) const { return half << 31 | drawn_; }
+  std::vector<uint32_t> drawing(uint32_t half) const;
+  PixelSums* sums(uint32_t half) { return halves_[half].sums.data(); }
+  void end_round();
+
+  // Samples drawn in all, and how many it will be, as far as can be said from the noise that is left.
+  double drawn() const { return total_; }
+  double expected() const { return total_ + left_; }
+
+  // Of the window: its picture, the samples drawn for each pixel, and the share of its blocks that came to the noise asked for
+  // before max_samples.
+  Image develop() const;
+  std::vector<uint32_t> sample_counts() const;
+  double converged() const;
+
+ private:
+  struct Half {
+    std::vector<PixelSums> sums;                  // of all samples, also those behind the estimate's end
+    std::vector<std::array<double, 3>> estimate;  // mean RGB
+    // A block each:
+    std::vector<uint32_t> samples;   // of each of its pixels, in sums
+    std::vector<uint8_t> converged;  // 1: these samples say that the other half may stop; for good
+    std::vector<uint8_t> ended;      // 1: the estimate is made
+
+    bool draws(uint32_t block) const { return !ended[block] || !converged[block]; }
+  };
+
+  // The noise that the block would have if both halves had as many samples as this one, over what it may have.
+  double excess(const Half& half, uint32_t block) const;
+  bool converged_around(const Half& half, uint32_t block) const;
+  template <class F>
+  void for_each_pixel(uint32_t block, const F& f) const;
+
+  uint32_t width_, height_;
+  Window window_;
+  double noise_;
+  uint32_t max_drawn_;  // of a half
+  Window blocks_;       // that are drawn, in blocks
+  uint32_t drawn_ = 0;  // by each half that still draws
+  uint32_t count_ = 0;
+  double total_ = 0, left_ = 0;
+  Half halves_[kHalves];
+};
+
+}  // namespace lanewise
