@@ -21,7 +21,7 @@ struct Curve {
   std::string x_axis;  // quantity (unit)
   std::string y_axis;  // quantity of both errors (unit)
   bool log_x = true;
-  std::vector<CurvePoint> points;
+  std::vector<CurvePoint> points = {};
 
   double worst_naive() const;  // NaN counts as infinite, here and below
   double worst_ours() const;
