@@ -97,12 +97,12 @@ void occlude(const Plan& plan, const PathState& s, Range range);
 // reads: o n err l c L. writes: L.
 void gather_emission(const Plan& plan, const PathState& s, Range range);
 
-// Russian roulette from bounce kRouletteBounce on: survives with probability q = min(kMaxSurvival, max channel of beta)
-// and beta / q, else beta = 0; unbiased for every q.
+// Russian roulette from bounce kRouletteBounce on: survives with probability q = min(1, max channel of beta) and beta / q,
+// else beta = 0; unbiased for every q. So it never lifts a throughput above 1, and what ends a path of throughput 1 is
+// max_depth alone: a survival bounded below 1 would raise such paths by 1 / q at every bounce, and the variance without end.
 // reads: pixel sample beta, step. writes: beta.
 void roulette(const Plan& plan, const PathState& s, Range range);
 constexpr uint32_t kRouletteBounce = 4;
-constexpr float kMaxSurvival = 0.95f;
 
 // Rec. 709 luminance of linear RGB.
 constexpr double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
