@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/scene.h"
 #include "tests/kernel_harness.h"
@@ -25,7 +26,7 @@ constexpr uint32_t kRays = 100'000;
 constexpr uint32_t kRays = 5'000;
 #endif
 
-double per_100000(uint32_t n) { return 1e5 * n / kRays; }
+double per_100000(uint32_t n, size_t of) { return 1e5 * n / static_cast<double>(of); }
 
 uint32_t leaks(const Plan& plan, const std::vector<Ray>& rays) {
   uint32_t n = 0;
@@ -48,7 +49,7 @@ uint32_t worst_leaks(const std::vector<Triangle>& mesh, const std::vector<Ray>& 
   return worst;
 }
 
-uint32_t naive_leaks(const std::vector<Triangle>& mesh, const std::vector<Ray>& rays) {
+uint32_t naive_leaks(const std::vector<Triangle>& mesh, std::span<const Ray> rays) {
   return static_cast<uint32_t>(std::ranges::count_if(rays, [&](const Ray& ray) {
     return std::ranges::none_of(mesh, [&](const Triangle& t) { return test::moeller_trumbore(t, ray, 0); });
   }));
@@ -82,7 +83,9 @@ TEST_SUITE("stability") {
       }
       std::vector<Ray> rays;
       while (rays.size() < kRays) rays.push_back(ray_to_edge(rng, mesh[rng() % mesh.size()], eye, 0.2f));
-      curve.points.push_back({distance, per_100000(naive_leaks(mesh, rays)), per_100000(worst_leaks(mesh, rays))});
+      const std::span<const Ray> some = std::span(rays).first(kRays / 5);  // brute force takes its time
+      curve.points.push_back({distance, per_100000(naive_leaks(mesh, some), some.size()),
+                              per_100000(worst_leaks(mesh, rays), rays.size())});
     }
     CHECK(curve.worst_naive() > 50);
     CHECK(curve.worst_ours() == 0);
