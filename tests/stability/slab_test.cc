@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/reference/intersect.h"
 #include "tests/kernel_harness.h"
+#include "tests/stability/clear_hit.h"
 #include "tests/stability/curve.h"
 #include "tests/trace_plan.h"
 
@@ -36,16 +36,6 @@ bool naive_enters(const Triangle& t, const Ray& ray, const Distance& distance) {
     t_far = std::min(t_far, std::max(t0, t1));
   }
   return t_near <= t_far;
-}
-
-// Whether the ray, as it is in floats, meets the triangle clear of its edges and not edge-on: by double.
-bool clear_hit(const Triangle& t, const Ray& ray) {
-  const glm::dvec3 from(ray.o), d(ray.d), v0(t[0]);
-  const auto hit = reference::test_triangle<double>({v0 - from, glm::dvec3(t[1]) - from, glm::dvec3(t[2]) - from},
-                                                    reference::make_shear(d));
-  const glm::dvec3 w = hit.weight / hit.det, n = glm::cross(glm::dvec3(t[1]) - v0, glm::dvec3(t[2]) - v0);
-  return hit.inside && hit.depth / hit.det > 0 && std::min({w.x, w.y, w.z}) > 0.005 &&
-         std::abs(glm::dot(glm::normalize(n), d)) > 0.1;
 }
 
 double per_100000(uint64_t n, size_t of) { return 1e5 * static_cast<double>(n) / static_cast<double>(of); }
@@ -86,7 +76,7 @@ TEST_SUITE("stability") {
         const float a = unit(rng), b = (1 - a) * unit(rng);
         const glm::vec3 o = far + test::random_point(rng, 16), target = (1 - a - b) * t[0] + a * t[1] + b * t[2];
         const Ray ray{o, glm::normalize(target - o)};
-        if (!clear_hit(t, ray)) continue;
+        if (!test::clear_hit(t, ray, 0.005)) continue;
         rays.push_back(ray);
         naive += !naive_enters(t, ray, [](float plane, float origin, float rcp) { return plane * rcp - origin * rcp; });
       }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/reference/triangle.h"
 #include "tests/kernel_harness.h"
+#include "tests/stability/clear_hit.h"
 #include "tests/stability/curve.h"
 #include "tests/stability/moeller_trumbore.h"
 #include "tests/trace_plan.h"
@@ -23,17 +23,6 @@ constexpr uint32_t kRays = 20'000;
 #else
 constexpr uint32_t kRays = 1'000;
 #endif
-
-// Whether the ray, as it is in floats, meets the triangle clear of its edges and not edge-on.
-bool clear_hit(const Triangle& t, const Ray& ray) {
-  const glm::dvec3 from(ray.o), d(ray.d);
-  const auto hit = reference::test_triangle<double>(
-      {glm::dvec3(t[0]) - from, glm::dvec3(t[1]) - from, glm::dvec3(t[2]) - from}, reference::make_shear(d));
-  const glm::dvec3 w = hit.weight / hit.det;
-  const glm::dvec3 n = glm::cross(glm::dvec3(t[1]) - glm::dvec3(t[0]), glm::dvec3(t[2]) - glm::dvec3(t[0]));
-  return hit.inside && hit.depth / hit.det > 0 && std::min({w.x, w.y, w.z}) > 0.05 &&
-         std::abs(glm::dot(glm::normalize(n), glm::normalize(d))) > 0.1;
-}
 
 // The shares of these sure hits of one triangle that the naive form and ours lose.
 test::CurvePoint losses(double x, const Triangle& triangle, const std::vector<Ray>& rays) {
@@ -77,7 +66,7 @@ TEST_SUITE("stability") {
         const glm::vec3 o = away * test::random_direction(rng);
         const glm::vec3 target = (1 - a - b) * triangle[0] + a * triangle[1] + b * triangle[2];
         const Ray ray{o, glm::normalize(target - o)};
-        if (clear_hit(triangle, ray)) rays.push_back(ray);
+        if (test::clear_hit(triangle, ray, 0.05)) rays.push_back(ray);
       }
       curve.points.push_back(losses(size, triangle, rays));
     }
@@ -106,7 +95,7 @@ TEST_SUITE("stability") {
         // In planes of equal y, so that floats can say where the ray passes the narrow side.
         const float angle = 0.2f + 2.7f * unit(rng);
         const Ray ray{{unit(rng) - 0.5f, width * unit(rng), 1}, {std::cos(angle), 0, -std::sin(angle)}};
-        if (clear_hit(triangle, ray)) rays.push_back(ray);
+        if (test::clear_hit(triangle, ray, 0.05)) rays.push_back(ray);
       }
       curve.points.push_back(losses(width, triangle, rays));
     }
