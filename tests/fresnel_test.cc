@@ -1,92 +1,21 @@
-#include "kernels/kernels.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tests/fresnel_test.cc"
-#include "hwy/foreach_target.h"
-#include "hwy/highway.h"
-#include "kernels/fresnel-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace lanewise {
-namespace HWY_NAMESPACE {
-
-// n is a multiple of kLanes in both.
-void Dielectrics(Fresnel model, const float* c, const float* n_i, const float* n_t, size_t n, float* f, float* cos_t) {
-  const DF d;
-  for (size_t i = 0; i < n; i += hn::Lanes(d)) {
-    const Dielectric r = FresnelDielectric(model, hn::LoadU(d, c + i), hn::LoadU(d, n_i + i), hn::LoadU(d, n_t + i));
-    hn::StoreU(r.reflectance, d, f + i);
-    hn::StoreU(r.cos_t, d, cos_t + i);
-  }
-}
-
-void Conductors(Fresnel model, const float* c, const float* eta, const float* k, size_t n, float* f) {
-  const DF d;
-  for (size_t i = 0; i < n; i += hn::Lanes(d)) {
-    hn::StoreU(FresnelConductor(model, hn::LoadU(d, c + i), hn::LoadU(d, eta + i), hn::LoadU(d, k + i)), d, f + i);
-  }
-}
-
-// NOLINTNEXTLINE(google-readability-namespace-comments)
-}  // namespace HWY_NAMESPACE
-}  // namespace lanewise
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <complex>
 
 #include "kernels/reference/fresnel.h"
+#include "tests/fresnel_harness.h"
 #include "tests/kernel_harness.h"
 
 namespace lanewise {
 namespace {
 
-HWY_EXPORT(Dielectrics);
-HWY_EXPORT(Conductors);
-
-struct Inputs {
-  std::vector<float> c, a, b;
-
-  void add(float cosine, float first, float second) {
-    c.push_back(cosine);
-    a.push_back(first);
-    b.push_back(second);
-  }
-  void pad() {
-    while (c.size() % kLanes != 0) add(c.back(), a.back(), b.back());
-  }
-};
-
-struct Outputs {
-  std::vector<float> f, cos_t;
-};
-
-Outputs dielectrics(Fresnel model, Inputs in) {
-  in.pad();
-  Outputs out{std::vector<float>(in.c.size()), std::vector<float>(in.c.size())};
-  HWY_DYNAMIC_DISPATCH(Dielectrics)
-  (model, in.c.data(), in.a.data(), in.b.data(), in.c.size(), out.f.data(), out.cos_t.data());
-  return out;
-}
-
-std::vector<float> conductors(Fresnel model, Inputs in) {
-  in.pad();
-  std::vector<float> f(in.c.size());
-  HWY_DYNAMIC_DISPATCH(Conductors)(model, in.c.data(), in.a.data(), in.b.data(), in.c.size(), f.data());
-  return f;
-}
-
 using Complex = std::complex<double>;
-
-// Fresnel's equations as they stand, for any index, in complex numbers: mean of both polarisations.
-double fresnel_equations(double c, Complex n) {
-  const Complex cos_t = std::sqrt(1.0 - (1 - c * c) / (n * n));
-  const Complex rs = (c - n * cos_t) / (c + n * cos_t), rp = (n * c - cos_t) / (n * c + cos_t);
-  return (std::norm(rs) + std::norm(rp)) / 2;
-}
+using Inputs = test::FresnelInputs;
+using Outputs = test::DielectricOutputs;
+using test::conductors;
+using test::dielectrics;
+using test::fresnel_equations;
 
 const std::vector<float> kCosines = {1,    0.9999999f, 0.99f, 0.9f,  0.8f,  0.7454f, 0.7f,    0.6f,
                                      0.5f, 0.3f,       0.2f,  0.05f, 0.01f, 1.7e-3f, 1.7e-4f, 1e-6f};
@@ -260,4 +189,3 @@ TEST_CASE("fresnel: Schlick's and the course's forms are what they say, with the
 }
 
 }  // namespace lanewise
-#endif
