@@ -23,6 +23,12 @@ double worst(const std::vector<CurvePoint>& points, double CurvePoint::*error) {
 double Curve::worst_naive() const { return worst(points, &CurvePoint::naive); }
 double Curve::worst_ours() const { return worst(points, &CurvePoint::ours); }
 
+std::vector<double> log_spaced(double first, double last, int n) {
+  std::vector<double> values;
+  for (int i = 0; i < n; ++i) values.push_back(first * std::pow(last / first, i / (n - 1.0)));
+  return values;
+}
+
 void record(const Curve& curve) {
   const char* path = std::getenv("LANEWISE_STABILITY_CURVES");
   if (!path) return;

@@ -27,6 +27,9 @@ struct Curve {
   double worst_ours() const;
 };
 
+// n values from first to last, evenly spaced on a log axis.
+std::vector<double> log_spaced(double first, double last, int n);
+
 // Hands the curve to the stability page: appends it as a line of JSON to the file that $LANEWISE_STABILITY_CURVES names, if
 // it names one.
 void record(const Curve& curve);
