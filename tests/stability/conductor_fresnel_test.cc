@@ -57,13 +57,14 @@ TEST_SUITE_BEGIN("stability");
 
 TEST_CASE("stability: short cuts for the reflectance of conductors") {
   test::Curve course{.name = "conductor-fresnel",
-                     .title = "Reflectance of a conductor with eta = k: worst angle",
+                     .title = "Large-index reflectance of a conductor with eta = k: worst angle",
                      .naive = "large-index form, η² + k² (--fresnel course)",
                      .ours = "exact complex root (default)",
                      .x_axis = "η = k",
                      .y_axis = "absolute error of F"};
   test::Curve approximate = course;
   approximate.name = "conductor-schlick";
+  approximate.title = "Schlick's reflectance of a conductor with eta = k: worst angle";
   approximate.naive = "Schlick with exact F0 (--fresnel schlick)";
   for (const double index : test::log_spaced(0.05, 20, 27)) {
     const double ours = worst_of_kernels(index, index);
