@@ -85,7 +85,7 @@ def table(rows, command):
 
 def draw(rows, command, path):
     scenes = list(dict.fromkeys(r['scene'] for r in rows))
-    figure, axes = plt.subplots(1, len(scenes), figsize=(4 * len(scenes), 3.6), sharey=True, squeeze=False)
+    figure, axes = plt.subplots(1, len(scenes), figsize=(4 * len(scenes), 4), sharey=True, squeeze=False)
     colours = {'-a 16': '#d95f02', '-a 64': '#e6ab02', '--noise': '#1b6ca8'}
     for axis, scene in zip(axes[0], scenes):
         axis.axhline(0, color='black', linewidth=0.8)
@@ -106,10 +106,10 @@ def draw(rows, command, path):
         axis.set_title(scene, fontsize=10)
         axis.set_xlabel('standard error aimed at (% of a pixel)')
     axes[0][0].set_ylabel('bias of the mean luminance (%)')
-    axes[0][0].legend(fontsize=8, loc='lower left')
+    figure.legend(*axes[0][0].get_legend_handles_labels(), fontsize=8, loc='lower center', ncol=4, bbox_to_anchor=(0.5, 0.03))
     figure.suptitle('Pixels that stop on their own samples end too dark (symmetric log axis)', fontsize=11)
     figure.text(0.995, 0.005, command, ha='right', fontsize=7, color='grey')
-    figure.tight_layout(rect=(0, 0.02, 1, 1))
+    figure.tight_layout(rect=(0, 0.1, 1, 1))
     figure.savefig(path)
 
 
