@@ -1,4 +1,4 @@
-// The naive form of a ray's distance to the surface that it leaves: a constant, in scene units.
+// The naive forms of a ray's distance to the surface that it leaves: a constant, in scene units, or none.
 #pragma once
 
 #include "core/plan.h"
@@ -7,9 +7,9 @@ namespace lanewise::test {
 
 constexpr float kFixedEpsilon = 1e-4f;
 
-inline Plan with_fixed_epsilon(Plan plan) {
-  for (float& err : plan.prim_err) err = kFixedEpsilon;
-  for (PlanLight& light : plan.lights) light.err = kFixedEpsilon;
+inline Plan with_fixed_epsilon(Plan plan, float epsilon = kFixedEpsilon) {
+  for (float& err : plan.prim_err) err = epsilon;
+  for (PlanLight& light : plan.lights) light.err = epsilon;
   return plan;
 }
 

@@ -120,6 +120,15 @@ TEST_CASE("stability: a scene's picture does not know its scale") {
   CHECK(curve.points.front().naive > 0.9);
   CHECK(curve.points.back().naive > 0.3);
   test::record(curve);
+
+  curve.name = "self-intersection-none";
+  curve.naive = "rays start on surfaces";
+  const Image want = render(plans[kScales / 2]).image;
+  for (int i = 0; i < kScales; ++i) {
+    curve.points[i].naive = change(render(test::with_fixed_epsilon(plans[i], 0)).image, want).pixels;
+    CHECK(curve.points[i].naive > 0.3);  // they meet them again at every scale
+  }
+  test::record(curve);
 }
 
 TEST_CASE("stability: a scene's picture does not know its place") {
