@@ -96,7 +96,7 @@ TEST_CASE("stability: a lobe keeps its energy from alpha = 1 to 1e-5") {
   for (const double alpha : test::log_spaced(1e-5, 1, 21)) {
     test::CurvePoint point{alpha, std::abs(course_energy(alpha) - 1), 0};
     test::for_each_target(
-        [&](const char*) { point.ours = std::max(point.ours, std::abs(lobe_energy(alpha) - exact_energy(alpha))); });
+        [&](const char*) { test::take_worst(point.ours, std::abs(lobe_energy(alpha) - exact_energy(alpha))); });
     // All but rounding where no sample is void; five standard deviations of at most 0.4 elsewhere.
     CHECK(point.ours < (alpha < 0.1 ? 2e-5 : 5 * 0.4 / std::sqrt(kSamples)));
     curve.points.push_back(point);
@@ -121,8 +121,8 @@ TEST_CASE("stability: a polished metal's picture meets the mirror's without a st
     const double clamped = difference(metal_picture(1e-3), mirror);
     for (test::CurvePoint& point : curve.points) {
       const double ours = difference(metal_picture(point.x), mirror);
-      point.ours = std::max(point.ours, ours / point.x);
-      point.naive = std::max(point.naive, (point.x < 1e-3 ? clamped : ours) / point.x);
+      test::take_worst(point.ours, ours / point.x);
+      test::take_worst(point.naive, (point.x < 1e-3 ? clamped : ours) / point.x);
     }
     CHECK(difference(metal_picture(0), mirror) < 1e-6);
   });

@@ -1,6 +1,5 @@
 #include "tests/stability/curve.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -12,9 +11,7 @@ namespace {
 
 double worst(const std::vector<CurvePoint>& points, double CurvePoint::*error) {
   double result = 0;
-  for (const CurvePoint& p : points) {
-    result = std::isnan(p.*error) ? std::numeric_limits<double>::infinity() : std::max(result, p.*error);
-  }
+  for (const CurvePoint& p : points) take_worst(result, p.*error);
   return result;
 }
 
@@ -22,6 +19,10 @@ double worst(const std::vector<CurvePoint>& points, double CurvePoint::*error) {
 
 double Curve::worst_naive() const { return worst(points, &CurvePoint::naive); }
 double Curve::worst_ours() const { return worst(points, &CurvePoint::ours); }
+
+void take_worst(double& worst, double error) {
+  if (!(error <= worst)) worst = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+}
 
 std::vector<double> log_spaced(double first, double last, int n) {
   std::vector<double> values;

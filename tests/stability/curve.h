@@ -27,6 +27,9 @@ struct Curve {
   double worst_ours() const;
 };
 
+// Raises the worst error so far; NaN counts as infinite.
+void take_worst(double& worst, double error);
+
 // n values from first to last, evenly spaced on a log axis.
 std::vector<double> log_spaced(double first, double last, int n);
 
