@@ -1,9 +1,9 @@
 // The scenes that come with the project, and the course's where they are at hand.
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <utility>
 
+#include "tests/scene_paths.h"
 #include "tests/scenes_harness.h"
 
 namespace lanewise {
@@ -11,12 +11,7 @@ namespace {
 
 using glm::dvec3;
 
-std::filesystem::path source_dir() {
-  const char* folder = std::getenv("LANEWISE_SOURCE_DIR");
-  return folder != nullptr ? folder : ".";
-}
-
-Scene shipped(const char* name) { return load_scene((source_dir() / "scenes" / name).string()); }
+Scene shipped(const char* name) { return load_scene(test::shipped_scene(name).string()); }
 
 size_t emissive_triangles(const Scene& scene) {
   size_t count = 0;
@@ -124,9 +119,7 @@ TEST_CASE("built-in scenes: the dense mesh") {
 }
 
 TEST_CASE("course scenes, where they are at hand") {
-  const char* folder = std::getenv("LANEWISE_COURSE_SCENES");
-  const std::filesystem::path scenes =
-      folder != nullptr ? std::filesystem::path(folder) : source_dir() / "../shared/scenes";
+  const std::filesystem::path scenes = test::course_scenes();
   if (!std::filesystem::is_directory(scenes)) return;
   struct Expected {
     const char* name;
