@@ -56,44 +56,4 @@ TEST_CASE("sample_light: SIMD against its twin for a parallelogram, a triangle, 
   check_light(sphere, 2);
 }
 
-TEST_CASE("sample_light: 1 / pdf integrates to the solid angle of the light") {
-  // A point below the middle of the 0.8 x 0.6 light: the solid angle of a rectangle, seen from its axis.
-  const Plan plan = test::test_plan();
-  const double h = 1.0, a = 0.4, b = 0.3;
-  const double solid_angle = 4 * std::asin(a * b / std::sqrt((a * a + h * h) * (b * b + h * h)));
-  double sum = 0;
-  constexpr int kSamples = 100000;
-  for (int i = 0; i < kSamples; ++i) {
-    Path<double> p;
-    p.sample = static_cast<uint32_t>(i);
-    p.o_z = 1.49 - h - plan.center[2];
-    p.n_z = 1;
-    reference::sample_light(plan, p);
-    sum += 1 / p.l_pdf;
-  }
-  CHECK(sum / kSamples == doctest::Approx(solid_angle).epsilon(0.002));
-}
-
-TEST_CASE("sample_light: patches are chosen by area and points are uniform") {
-  const Plan plan = make_plan(fan_scene(), {});
-  const PlanLight& light = plan.lights[0];
-  // The mean of points uniform on the fan is its centroid.
-  glm::dvec3 centroid(0), mean(0);
-  double below = 0;
-  for (uint32_t k = 0; k < light.patches; ++k) {
-    const LightPatch& patch = plan.light_patches[light.first_patch + k];
-    const glm::dvec3 corner = reference::vec3<double>(patch.corner);
-    centroid +=
-        (patch.cdf - below) * (corner + (reference::vec3<double>(patch.e1) + reference::vec3<double>(patch.e2)) / 3.0);
-    below = patch.cdf;
-  }
-  CHECK(below == 1);
-  constexpr int kSamples = 100000;
-  for (int i = 0; i < kSamples; ++i) {
-    const auto random = reference::draw_random<double>(3, static_cast<uint32_t>(i), 2, 0);
-    mean += reference::sample_patch(plan, light, random).q / double(kSamples);
-  }
-  CHECK(glm::length(mean - centroid) < 0.003);
-}
-
 }  // namespace lanewise

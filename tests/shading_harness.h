@@ -87,25 +87,4 @@ inline void fill_alike(PathBuffer& paths, uint32_t n, double cosine) {
   }
 }
 
-// Pearson's statistic of counts against expectations (which need not sum to the same), in standard deviations above its
-// mean; cells that expect fewer than 5 are pooled.
-inline double chi_square_excess(const std::vector<double>& counts, const std::vector<double>& expected) {
-  double statistic = 0, pooled_count = 0, pooled_expected = 0;
-  int cells = -1;
-  const auto add = [&](double count, double mean) {
-    statistic += (count - mean) * (count - mean) / mean;
-    ++cells;
-  };
-  for (size_t i = 0; i < counts.size(); ++i) {
-    if (expected[i] >= 5) {
-      add(counts[i], expected[i]);
-    } else {
-      pooled_count += counts[i];
-      pooled_expected += expected[i];
-    }
-  }
-  if (pooled_expected >= 5) add(pooled_count, pooled_expected);
-  return (statistic - cells) / std::sqrt(2.0 * cells);
-}
-
 }  // namespace lanewise::test
