@@ -30,9 +30,10 @@ constexpr uint32_t kSeeds = 4, kSpp = 4;
 // How much to render.
 struct Effort {
   uint32_t width, height, spp, seeds, block;
+  double apart;  // largest share of pixels more than 1% apart in pairs of the same seed
 };
-constexpr Effort kQuick{48, 36, kSpp, kSeeds, 6};
-constexpr Effort kThorough{64, 48, 32, 16, 4};
+constexpr Effort kQuick{48, 36, kSpp, kSeeds, 6, 0.03};
+constexpr Effort kThorough{64, 48, 32, 16, 4, 0.05};  // its paths among dense smooth triangles part often
 
 Plan plan_of(const Scene& scene, const Effort& effort) {
   Settings settings;
@@ -56,7 +57,7 @@ Verdict check(const std::string& name, Plan& plan, uint32_t depth, const Effort&
   CAPTURE(depth);
   CHECK(verdict.unpaired.pixels_passed >= 0.9975);
   means.add(name + " at -m " + std::to_string(depth), verdict.unpaired.mean_p);
-  CHECK(verdict.paired.differing < 0.03);
+  CHECK(verdict.paired.differing < effort.apart);
   CHECK(std::abs(verdict.paired.difference) < 4 * verdict.paired.error + 1e-6);
   return verdict;
 }
@@ -121,7 +122,7 @@ TEST_CASE("unbiased: SIMD against double reference, course scenes where they are
 
 TEST_CASE("unbiased: p-values between instruction sets are uniform") {
   // Sixteen pictures of many samples, blocks of 6 x 6: near enough to normal for the histogram to be flat.
-  constexpr Effort kEffort{48, 36, kSpp, 2 * kSeeds, 6};
+  constexpr Effort kEffort{48, 36, kSpp, 2 * kSeeds, 6, 0};
   Plan plan = plan_of(test::test_scene(), kEffort);
   std::vector<double> p_values;
   test::Family means;
@@ -147,7 +148,7 @@ TEST_CASE("unbiased: p-values between instruction sets are uniform") {
 TEST_CASE("unbiased: a renderer with 1% less albedo is found out, its like is not") {
   Scene darker = test::test_box();
   for (Material& m : darker.materials) m.reflectance *= 0.99;
-  constexpr Effort kEffort{48, 36, 4 * kSpp, 2 * kSeeds, 6};
+  constexpr Effort kEffort{48, 36, 4 * kSpp, 2 * kSeeds, 6, 0};
   Plan right = plan_of(test::test_box(), kEffort), wrong = plan_of(darker, kEffort);
   const std::vector<Image> want = test::independent_renders(right, test::simd, 1000, kEffort.seeds);
   const auto unpaired_p = [&](Plan& plan) {
@@ -181,6 +182,9 @@ of blocks of )"
         << kThorough.block << " x " << kThorough.block << R"( pixels are uniform.
 *Paired*: both take the same seeds, so the same paths up to rounding. Share of pixels more than 1% apart, difference of the
 means, its standard error.
+
+p of blocks is not fit for scenes with caustics: where one picture alone holds a rare bright path, t is 1 and p 0.33,
+whatever the renderer; the histogram at the end shows them.
 
 | scene | normals | `-m` | pixels passed | p of mean | difference | error | p of blocks | pixels apart | difference | error |
 |---|---|---|---|---|---|---|---|---|---|---|
