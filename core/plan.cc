@@ -106,6 +106,8 @@ class Planner {
       out.pixel = static_cast<float>(2 * tan_y / 600);
     }
     copy(-back, out.forward);
+    out.lens_radius = static_cast<float>(settings.lens_radius);
+    out.lens_angle = static_cast<float>(settings.lens_radius / settings.focal_distance);
   }
 
   // The smallest meshes first, as long as the flat list stays short.

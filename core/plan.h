@@ -122,7 +122,9 @@ struct PlanCamera {
   float forward[3];  // orthonormal
   float right[3];
   float up[3];
-  float pixel;  // a pixel's side at distance 1 (square pixels): 1 / focal length in pixels
+  float pixel;        // a pixel's side at distance 1 (square pixels): 1 / focal length in pixels
+  float lens_radius;  // 0: a pinhole
+  float lens_angle;   // lens_radius / focal distance
 };
 
 // A material's part in a bounce: `light` weighs the light sample at every vertex, `shade` scatters the path.

@@ -81,7 +81,7 @@ bool divides(const dvec3& n, double distance, std::span<const FlatTriangle> tria
 }  // namespace
 
 void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles) {
-  const double camera_reach = sum_abs(to_dvec3(plan.camera.eye));
+  const double camera_reach = sum_abs(to_dvec3(plan.camera.eye)) + 2 * double{plan.camera.lens_radius};
   for (const Parallelogram& p : find_parallelograms(triangles)) {
     const FlatTriangle& first = triangles[p.first];
     if (p.is_triangle()) {

@@ -27,6 +27,8 @@ struct Settings {
   uint32_t wave = 4096;        // paths in flight per thread, a multiple of kLanes
   uint64_t seed = 0;
   View view = View::kFile;
+  double lens_radius = 0;     // -b: of a thin lens, in scene units; 0: a pinhole
+  double focal_distance = 1;  // -d: along the view axis, of the plane that the lens shows sharp, > 0
   Direct direct = Direct::kMis;
   BsdfSampling bsdf_sampling = BsdfSampling::kVndf;
   Fresnel fresnel = Fresnel::kExact;

@@ -5,6 +5,7 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
+#include "kernels/math-inl.h"
 #include "kernels/rng-inl.h"
 #include "kernels/simd-inl.h"
 
@@ -42,13 +43,27 @@ void Generate(const Plan& plan, const PathState& s, Range range) {
   const VF pixel = Splat(camera.pixel);
   const Vec3 eye = SplatVec3(camera.eye), forward = SplatVec3(camera.forward);
   const Vec3 right = SplatVec3(camera.right), up = SplatVec3(camera.up);
+  const bool has_lens = camera.lens_radius > 0;
+  const VF lens_radius = Splat(camera.lens_radius), lens_angle = Splat(camera.lens_angle);
   const VF zero = hn::Zero(DF()), one = Splat(1.0f);
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
     const Random4 random = DrawRandom(plan, s, i, kSetCamera);
     const VF x = hn::Sub(hn::Add(hn::Load(DF(), s.o_x + i), random.u[0]), half_width);
     const VF y = hn::Sub(half_height, hn::Add(hn::Load(DF(), s.o_y + i), random.u[1]));
-    const Vec3 d = Normalize(MulAdd(hn::Mul(x, pixel), right, MulAdd(hn::Mul(y, pixel), up, forward)));
-    StoreVec3(eye, s.o_x, s.o_y, s.o_z, i);
+    VF across = hn::Mul(x, pixel), upwards = hn::Mul(y, pixel);
+    Vec3 o = eye;
+    if (has_lens) {
+      const VF r = hn::Sqrt(random.u[2]);
+      VF sin, cos;
+      SinCos2Pi(random.u[3], sin, cos);
+      const VF lens_x = hn::Mul(r, cos), lens_y = hn::Mul(r, sin);
+      o = MulAdd(hn::Mul(lens_radius, lens_x), right, MulAdd(hn::Mul(lens_radius, lens_y), up, eye));
+      // All rays of this x and y meet at the focal distance.
+      across = hn::NegMulAdd(lens_angle, lens_x, across);
+      upwards = hn::NegMulAdd(lens_angle, lens_y, upwards);
+    }
+    const Vec3 d = Normalize(MulAdd(across, right, MulAdd(upwards, up, forward)));
+    StoreVec3(o, s.o_x, s.o_y, s.o_z, i);
     StoreVec3(d, s.d_x, s.d_y, s.d_z, i);
     StoreVec3({one, one, one}, s.beta_r, s.beta_g, s.beta_b, i);
     StoreVec3({zero, zero, zero}, s.L_r, s.L_g, s.L_b, i);

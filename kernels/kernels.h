@@ -18,7 +18,8 @@ namespace lanewise {
 
 using Kernel = void(const Plan&, const PathState&, Range);
 
-// Starts camera paths: pinhole at the eye, uniform in the pixel (a box filter of one pixel).
+// Starts camera paths: uniform in the pixel (a box filter of one pixel), from the eye or, with a thin lens, uniform on the
+// lens and through the point where the ray from the eye meets the plane in focus.
 // reads: batch. writes: pixel sample slot o d beta L pdf.
 void generate(const Plan& plan, const PathState& s, Range range);
 

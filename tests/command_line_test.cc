@@ -167,8 +167,10 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
       {{"--fresnel", "fast"}, "--fresnel"},
       {{"-H", "--direct", "mis"}, "--hemisphere"},
       {{"-e", "sky.exr"}, "--environment: not yet supported"},
-      {{"-b", "0.1"}, "--lens-radius: not yet supported"},
-      {{"-d", "3"}, "--focal-distance: not yet supported"},
+      {{"-b", "0.1"}, "--focal-distance"},  // a lens needs both
+      {{"-d", "3"}, "--lens-radius"},
+      {{"-b", "-0.1", "-d", "3"}, "--lens-radius"},
+      {{"-b", "0.1", "-d", "0"}, "--focal-distance"},
       {{"-p", "0", "0", "5"}, "--crop"},
       {{"-p", "0", "0", "0", "5"}, "--crop: must be a part"},
       {{"-r", "16", "12", "-p", "8", "0", "9", "5"}, "--crop: must be a part of the picture's 16 x 12"},

@@ -24,8 +24,6 @@ constexpr struct {
   const char* help;
 } kNotYet[] = {
     {"-e,--environment", "FILE", 1, "Environment map"},
-    {"-b,--lens-radius", "R", 1, "Radius of a thin lens"},
-    {"-d,--focal-distance", "D", 1, "Distance that the lens focuses on"},
 };
 
 void add_picture_flags(CLI::App& app, RenderOptions& o) {
@@ -44,6 +42,16 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("-c,--camera-file", o.camera_file,
                  "Camera (JSON: eye, target, up, xfov, aspect) in place of the scene's")
       ->type_name("FILE");
+  CLI::Option* radius = app.add_option("-b,--lens-radius", o.settings.lens_radius, "Radius of a thin lens")
+                            ->check(real_number(0, 1e6))
+                            ->type_name("R")
+                            ->default_str("a pinhole");
+  CLI::Option* distance = app.add_option("-d,--focal-distance", o.settings.focal_distance,
+                                         "Distance along the view axis that it shows sharp")
+                              ->check(real_number(0, 1e9))
+                              ->type_name("D");
+  radius->needs(distance);
+  distance->needs(radius);
 }
 
 void add_sampling_flags(CLI::App& app, RenderOptions& o) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <numbers>
+
 #include "kernels/kernels.h"
 #include "kernels/reference/rng.h"
 #include "kernels/reference/vec3.h"
@@ -14,10 +17,16 @@ void generate(const Plan& plan, Path<T>& p) {
   const T x = T(p.pixel % plan.settings.width) + random.u[0] - T(0.5) * T(plan.settings.width);
   const T y = T(0.5) * T(plan.settings.height) - (T(p.pixel / plan.settings.width) + random.u[1]);
   const T pixel = T(camera.pixel);
-  LANEWISE_SET_VEC3(p, o, vec3<T>(camera.eye));
-  LANEWISE_SET_VEC3(
-      p, d,
-      glm::normalize(x * pixel * vec3<T>(camera.right) + y * pixel * vec3<T>(camera.up) + vec3<T>(camera.forward)));
+  const Vec3<T> right = vec3<T>(camera.right), up = vec3<T>(camera.up), forward = vec3<T>(camera.forward);
+  Vec3<T> o = vec3<T>(camera.eye), d = x * pixel * right + y * pixel * up + forward;
+  if (camera.lens_radius > 0) {
+    const T r = std::sqrt(random.u[2]), phi = 2 * std::numbers::pi_v<T> * random.u[3];
+    const Vec3<T> on_unit_lens = r * std::cos(phi) * right + r * std::sin(phi) * up;
+    o += T(camera.lens_radius) * on_unit_lens;
+    d -= T(camera.lens_angle) * on_unit_lens;
+  }
+  LANEWISE_SET_VEC3(p, o, o);
+  LANEWISE_SET_VEC3(p, d, glm::normalize(d));
   LANEWISE_SET_RGB(p, beta, Vec3<T>(1));
   LANEWISE_SET_RGB(p, L, Vec3<T>(0));
   p.pdf = 0;

@@ -158,6 +158,40 @@ Scene lights_scene() {
   return scene;
 }
 
+// generate for samples of one pixel.
+struct Generate {
+  uint32_t of_pixel;
+
+  void operator()(const Plan& plan, const PathState& s, Range range) const {
+    PathState batched = s;
+    batched.batch = {&of_pixel, test::kDraws, s.sample[0], 0, range.size()};
+    generate(plan, batched, range);
+  }
+};
+
+struct CameraView {
+  Vec eye, right, up, forward;
+  double width, height, side;
+
+  explicit CameraView(const Plan& plan)
+      : eye(reference::vec3<double>(plan.camera.eye)),
+        right(reference::vec3<double>(plan.camera.right)),
+        up(reference::vec3<double>(plan.camera.up)),
+        forward(reference::vec3<double>(plan.camera.forward)),
+        width(plan.settings.width),
+        height(plan.settings.height),
+        side(plan.camera.pixel) {}
+
+  // Column and row, from the upper left corner, at which a pinhole at the eye sees what lies in this direction.
+  glm::dvec2 pixel(const Vec& d) const {
+    const double scale = 1 / (glm::dot(d, forward) * side);
+    return {glm::dot(d, right) * scale + width / 2, height / 2 - glm::dot(d, up) * scale};
+  }
+};
+
+// A place in a pixel; a direction in float is good to 1e-4 of one.
+double kept(double t) { return std::abs(t - 0.5) < 0.5001 ? std::clamp(t, 0.0, 1.0) : t; }
+
 constexpr uint32_t kQuadLight = 0, kTriangleLight = 1, kTentLight = 2, kSphereLight = 3;
 
 }  // namespace
@@ -209,27 +243,44 @@ TEST_CASE("chi-square: camera rays are uniform in their pixel, on every target")
   Settings settings;
   settings.width = 480, settings.height = 360;
   const Plan plan = test::test_plan(settings);
-  const Vec right = reference::vec3<double>(plan.camera.right), up = reference::vec3<double>(plan.camera.up),
-            forward = reference::vec3<double>(plan.camera.forward);
+  const CameraView view(plan);
   test::for_each_target([&](const char* target) {
     for (const uint32_t pixel : {0u, 479u, 180u * 480 + 240, 359u * 480 + 17}) {
-      const double column = pixel % 480, row = pixel / 480;
       test::ChiSquare test({{0, 1}, {0, 1}, 16, 16, [](double, double) { return 1.0; }});
-      const auto start = [&](const Plan& p, const PathState& s, Range range) {
-        PathState batched = s;
-        batched.batch = {&pixel, test::kDraws, s.sample[0], 0, range.size()};
-        generate(p, batched, range);
-      };
-      test::for_each_draw(start, plan, {}, test::kDraws / 4, [&](const PathState& s, uint32_t i) {
-        const Vec d(s.d_x[i], s.d_y[i], s.d_z[i]);
-        const double scale = 1 / (glm::dot(d, forward) * plan.camera.pixel);
-        const double x = glm::dot(d, right) * scale + 240 - column, y = 180 - glm::dot(d, up) * scale - row;
-        // A direction in float is good to 1e-4 of a pixel.
-        const auto kept = [](double t) { return std::abs(t - 0.5) < 0.5001 ? std::clamp(t, 0.0, 1.0) : t; };
-        test.add(kept(x), kept(y));
+      test::for_each_draw(Generate{pixel}, plan, {}, test::kDraws / 4, [&](const PathState& s, uint32_t i) {
+        const glm::dvec2 in_pixel = view.pixel({s.d_x[i], s.d_y[i], s.d_z[i]}) - glm::dvec2(pixel % 480, pixel / 480);
+        test.add(kept(in_pixel.x), kept(in_pixel.y));
       });
       family.add(std::string(target) + " pixel " + std::to_string(pixel), test.p());
     }
+  });
+  CHECK_MESSAGE(family.holds(), family.least_likely());
+}
+
+TEST_CASE(
+    "chi-square: origins are uniform on the lens, and all rays of a point in the pixel meet in focus, on every "
+    "target") {
+  test::Family family;
+  Settings settings;
+  settings.width = 480, settings.height = 360;
+  settings.lens_radius = 0.15, settings.focal_distance = 2.5;
+  const Plan plan = test::test_plan(settings);
+  const CameraView view(plan);
+  test::for_each_target([&](const char* target) {
+    // Over squared radius and azimuth, and over the pixel, in the plane in focus.
+    test::ChiSquare lens({{0, 1}, {-pi, pi}, 16, 32, [](double, double) { return 1 / (2 * pi); }});
+    test::ChiSquare focus({{0, 1}, {0, 1}, 16, 16, [](double, double) { return 1.0; }});
+    constexpr uint32_t kPixel = 100 * 480 + 333;
+    test::for_each_draw(Generate{kPixel}, plan, {}, test::kDraws / 4, [&](const PathState& s, uint32_t i) {
+      const Vec offset = Vec(s.o_x[i], s.o_y[i], s.o_z[i]) - view.eye, d(s.d_x[i], s.d_y[i], s.d_z[i]);
+      const double x = glm::dot(offset, view.right) / 0.15, y = glm::dot(offset, view.up) / 0.15;
+      lens.add(std::min(x * x + y * y, 1.0), std::atan2(y, x));
+      const Vec at = offset + d * ((2.5 - glm::dot(offset, view.forward)) / glm::dot(d, view.forward));
+      const glm::dvec2 in_pixel = view.pixel(at) - glm::dvec2(333, 100);
+      focus.add(kept(in_pixel.x), kept(in_pixel.y));
+    });
+    family.add(std::string(target) + " lens", lens.p());
+    family.add(std::string(target) + " focus", focus.p());
   });
   CHECK_MESSAGE(family.holds(), family.least_likely());
 }
