@@ -88,7 +88,8 @@ def draw(curve):
     for form, errors in curve["errors"].items():
         style = STYLES[form]
         y = [floor if e == 0 else ceiling if e == math.inf else e for e in errors]
-        axes.plot(curve["x"], y, linewidth=1.5, markersize=3.2, label=f"{form}: {curve[form]}", zorder=3, **style)
+        axes.plot(curve["x"], y, linewidth=1.5, markersize=3.2, label=textwrap.fill(f"{form}: {curve[form]}", 60),
+                  zorder=3, **style)
         # What the axis cannot show is drawn hollow, at its end.
         ends = [(x, v) for x, v, e in zip(curve["x"], y, errors) if e in (0, math.inf)]
         if ends:
@@ -101,8 +102,8 @@ def draw(curve):
     axes.set_ylim((floor or low) / 1.5, (ceiling or high) * 1.5)
     axes.set_yticks([t for t in axes.get_yticks() if low <= t * 1.0001 and t <= high * 1.0001])
     axes.yaxis.set_minor_locator(matplotlib.ticker.NullLocator())
-    axes.set_xlabel(curve["x_axis"])
-    axes.set_ylabel(curve["y_axis"])
+    axes.set_xlabel(textwrap.fill(curve["x_axis"], 66))
+    axes.set_ylabel(textwrap.fill(curve["y_axis"], 38))
     title = textwrap.fill(curve["title"], 62)
     figure.suptitle(title, fontsize=10, fontweight="bold", x=0.01, ha="left")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1), frameon=False, fontsize=8.5, handlelength=2.6)

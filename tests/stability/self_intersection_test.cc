@@ -122,6 +122,7 @@ TEST_CASE("stability: a scene's picture does not know its scale") {
   test::record(curve);
 
   curve.name = "self-intersection-none";
+  curve.title = "The same scene, scaled, with rays from surfaces themselves: pixels that change by more than 1%";
   curve.naive = "rays start on surfaces";
   const Image want = render(plans[kScales / 2]).image;
   for (int i = 0; i < kScales; ++i) {
