@@ -126,9 +126,11 @@ TEST_SUITE("stability") {
       std::vector<Ray> rays;
       std::uniform_real_distribution<float> unit(0, 1);
       while (rays.size() < kRays / kFans) {
-        // Every fifth exactly at the hub, the rest along the spokes.
-        const glm::vec3 target = rng() % 5 == 0 ? hub : glm::mix(hub, rim[rng() % kCorners], 0.9f * unit(rng));
+        // Every fifth at the hub, half of those exactly, along an axis; the rest along the spokes.
+        const bool at_hub = rng() % 5 == 0;
+        const glm::vec3 target = at_hub ? hub : glm::mix(hub, rim[rng() % kCorners], 0.9f * unit(rng));
         glm::vec3 o = test::random_point(rng, 0.4f);
+        if (at_hub && rng() % 2) o = hub;
         o.z += rng() % 2 ? 3.0f : -3.0f;
         rays.push_back({o, glm::normalize(target - o)});
       }
