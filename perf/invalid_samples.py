@@ -1,0 +1,74 @@
+#!/usr/bin/python3
+"""Counts samples that are NaN, infinite or negative over the course scenes, at depths 0-5 and 100; there must be none.
+
+    perf/invalid_samples.py               # half an hour of two cores; writes perf/results/invalid_samples.md
+    perf/invalid_samples.py -s 16         # half a minute; writes nothing
+
+Smooth normals, the harder ones; each depth under a seed of its own. Exits with 0 if every sample is valid.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+PROGRAM = ROOT / 'build' / 'lanewise'
+DEPTHS = [0, 1, 2, 3, 4, 5, 100]
+SAMPLES = 1024
+
+
+def statistics(scene, depth, samples, threads):
+    with tempfile.TemporaryDirectory() as folder:
+        stats = pathlib.Path(folder) / 'stats.json'
+        flags = {'--view': 'fit', '--normals': 'smooth', '-s': samples, '-m': depth, '-t': threads, '--seed': depth,
+                 '-f': f'{folder}/picture.pfm', '--stats': stats}
+        command = [PROGRAM, 'render', scene, *(word for flag in flags.items() for word in flag)]
+        subprocess.run([str(word) for word in command], check=True, capture_output=True)
+        return json.loads(stats.read_text())
+
+
+def page(rows, samples, command):
+    """rows: {scene: [statistics of each depth]}."""
+    everything = [s for stats in rows.values() for s in stats]
+    first = everything[0]
+    total, invalid = (sum(s[key] for s in everything) for key in ('samples', 'invalid_samples'))
+    lines = ['# Invalid samples', '',
+             f'**{invalid} of {total:,} samples** are NaN, infinite or negative: {len(rows)} course scenes, '
+             f'{first["width"]} x {first["height"]} pixels, {samples} samples a pixel, smooth normals, {first["isa"]}, '
+             f'Lanewise {first["version"]}.', '', f'    {command}', '',
+             '| scene | ' + ' | '.join(f'-m {d}' for d in DEPTHS) + ' | rays, million | s |',
+             '|---' * (len(DEPTHS) + 3) + '|']
+    for scene, stats in rows.items():
+        rays, seconds = sum(s['rays']['total'] for s in stats) / 1e6, sum(s['seconds']['render'] for s in stats)
+        counts = ' | '.join(str(s['invalid_samples']) for s in stats)
+        lines.append(f'| {scene} | {counts} | {rays:,.0f} | {seconds:.0f} |')
+    return '\n'.join(lines) + '\n', invalid
+
+
+def main():
+    parser = argparse.ArgumentParser(description='Counts invalid samples over the course scenes.')
+    parser.add_argument('--scenes', type=pathlib.Path, default=ROOT.parent / 'shared' / 'scenes',
+                        help='folder of the course scenes')
+    parser.add_argument('-s', '--samples', type=int, default=SAMPLES, help='a pixel')
+    parser.add_argument('-t', '--threads', type=int, default=0)
+    arguments = parser.parse_args()
+    scenes = sorted(arguments.scenes.glob('*.dae'))
+    if not scenes:
+        raise SystemExit(f'{arguments.scenes}: no scenes')
+    rows = {}
+    for scene in scenes:
+        rows[scene.stem] = []
+        for depth in DEPTHS:
+            rows[scene.stem].append(statistics(scene, depth, arguments.samples, arguments.threads))
+            print(scene.stem, depth, rows[scene.stem][-1]['invalid_samples'], flush=True)
+        text, invalid = page(rows, arguments.samples, ' '.join(['perf/invalid_samples.py', *sys.argv[1:]]))
+        if arguments.samples == SAMPLES:  # after every scene: a run that is cut short says how far it came
+            (ROOT / 'perf' / 'results' / 'invalid_samples.md').write_text(text)
+    print(text)
+    return 0 if invalid == 0 else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,47 @@
+"""Lanewise from its command line, for the scripts that compare and count."""
+import json
+import pathlib
+import subprocess
+import tempfile
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = ROOT / 'build' / 'lanewise'
+
+
+def render(scene, *flags, camera=None):
+    """The picture (height, width, 3), row 0 at the top, and the run's statistics. camera: a collada.Camera."""
+    with tempfile.TemporaryDirectory() as folder:
+        picture, stats, view = (pathlib.Path(folder) / name for name in ('picture.pfm', 'stats.json', 'camera.json'))
+        command = [PROGRAM, 'render', scene, '-f', picture, '--stats', stats, *flags]
+        if camera:
+            view.write_text(json.dumps({
+                'eye': camera.eye.tolist(), 'target': camera.target.tolist(),
+                'xfov': float(2 * np.degrees(np.arctan(camera.tan_x))), 'aspect': camera.tan_x / camera.tan_y}))
+            command += ['-c', view]
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise SystemExit(f'{" ".join(map(str, command))}: {done.stderr}')
+        return read_pfm(picture), json.loads(stats.read_text())
+
+
+def read_pfm(path):
+    _, size, _, pixels = path.read_bytes().split(b'\n', 3)
+    width, height = map(int, size.split())
+    return np.frombuffer(pixels, '<f4').reshape(height, width, 3)[::-1].copy()
+
+
+def version():
+    """Of the program, with the commit of the sources around it."""
+    said = subprocess.run([PROGRAM, '--version'], capture_output=True, text=True, check=True).stdout.strip()
+    git = ['git', '-C', ROOT, 'rev-parse', '--short', 'HEAD']
+    commit = subprocess.run(git, capture_output=True, text=True, check=False)
+    return said.removeprefix('lanewise ') + (f' ({commit.stdout.strip()})' if commit.returncode == 0 else '')
+
+
+def processor():
+    with open('/proc/cpuinfo', encoding='utf-8') as info:
+        fields = dict(line.split(':', 1) for line in info.read().split('\n\n')[0].splitlines() if ':' in line)
+    fields = {key.strip(): value.strip() for key, value in fields.items()}
+    return f"{fields['model name']} (family {fields['cpu family']}, model {fields['model']})"
