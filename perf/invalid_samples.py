@@ -4,7 +4,7 @@
     perf/invalid_samples.py               # half an hour of two cores; writes perf/results/invalid_samples.md
     perf/invalid_samples.py -s 16         # half a minute; writes nothing
 
-Smooth normals, the harder ones; each depth under a seed of its own. Exits with 0 if every sample is valid.
+Smooth normals, the harder ones. Exits with 0 if every sample is valid.
 """
 import argparse
 import json
@@ -15,14 +15,14 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = ROOT / 'build' / 'lanewise'
-DEPTHS = [0, 1, 2, 3, 4, 5, 100]
+DEPTHS = [0, 1, 2, 3, 4, 5, 100]  # the deepest are counted first: their paths hold the others'
 SAMPLES = 1024
 
 
 def statistics(scene, depth, samples, threads):
     with tempfile.TemporaryDirectory() as folder:
         stats = pathlib.Path(folder) / 'stats.json'
-        flags = {'--view': 'fit', '--normals': 'smooth', '-s': samples, '-m': depth, '-t': threads, '--seed': depth,
+        flags = {'--view': 'fit', '--normals': 'smooth', '-s': samples, '-m': depth, '-t': threads,
                  '-f': f'{folder}/picture.pfm', '--stats': stats}
         command = [PROGRAM, 'render', scene, *(word for flag in flags.items() for word in flag)]
         subprocess.run([str(word) for word in command], check=True, capture_output=True)
@@ -30,8 +30,8 @@ def statistics(scene, depth, samples, threads):
 
 
 def page(rows, samples, command):
-    """rows: {scene: [statistics of each depth]}."""
-    everything = [s for stats in rows.values() for s in stats]
+    """rows: {scene: {depth: statistics}}."""
+    everything = [s for stats in rows.values() for s in stats.values()]
     first = everything[0]
     total, invalid = (sum(s[key] for s in everything) for key in ('samples', 'invalid_samples'))
     lines = ['# Invalid samples', '',
@@ -41,8 +41,9 @@ def page(rows, samples, command):
              '| scene | ' + ' | '.join(f'-m {d}' for d in DEPTHS) + ' | rays, million | s |',
              '|---' * (len(DEPTHS) + 3) + '|']
     for scene, stats in rows.items():
-        rays, seconds = sum(s['rays']['total'] for s in stats) / 1e6, sum(s['seconds']['render'] for s in stats)
-        counts = ' | '.join(str(s['invalid_samples']) for s in stats)
+        counts = ' | '.join(str(stats[d]['invalid_samples']) if d in stats else 'not run' for d in DEPTHS)
+        rays = sum(s['rays']['total'] for s in stats.values()) / 1e6
+        seconds = sum(s['seconds']['render'] for s in stats.values())
         lines.append(f'| {scene} | {counts} | {rays:,.0f} | {seconds:.0f} |')
     return '\n'.join(lines) + '\n', invalid
 
@@ -57,15 +58,14 @@ def main():
     scenes = sorted(arguments.scenes.glob('*.dae'))
     if not scenes:
         raise SystemExit(f'{arguments.scenes}: no scenes')
-    rows = {}
-    for scene in scenes:
-        rows[scene.stem] = []
-        for depth in DEPTHS:
-            rows[scene.stem].append(statistics(scene, depth, arguments.samples, arguments.threads))
-            print(scene.stem, depth, rows[scene.stem][-1]['invalid_samples'], flush=True)
-        text, invalid = page(rows, arguments.samples, ' '.join(['perf/invalid_samples.py', *sys.argv[1:]]))
-        if arguments.samples == SAMPLES:  # after every scene: a run that is cut short says how far it came
-            (ROOT / 'perf' / 'results' / 'invalid_samples.md').write_text(text)
+    rows = {scene.stem: {} for scene in scenes}
+    for depth in reversed(DEPTHS):
+        for scene in scenes:
+            rows[scene.stem][depth] = statistics(scene, depth, arguments.samples, arguments.threads)
+            print(scene.stem, depth, rows[scene.stem][depth]['invalid_samples'], flush=True)
+            text, invalid = page(rows, arguments.samples, ' '.join(['perf/invalid_samples.py', *sys.argv[1:]]))
+            if arguments.samples == SAMPLES:  # every time: a run that is cut short says how far it came
+                (ROOT / 'perf' / 'results' / 'invalid_samples.md').write_text(text)
     print(text)
     return 0 if invalid == 0 else 1
 
