@@ -127,7 +127,7 @@ TEST_SUITE("stability") {
                       .log_x = false,
                       .points = {}};
     const Plan plan = test::test_plan();
-    for (const double albedo : {0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999, 1.0}) {
+    for (const double albedo : {0.9, 0.95, 0.97, 0.98, 0.99, 1.0}) {
       CAPTURE(albedo);
       const double want = furnace(albedo);
       const Moments naive = naive_walks(albedo, [](double beta) { return std::min(0.95, beta); });

@@ -73,7 +73,7 @@ TEST_SUITE("stability") {
                       .x_axis = "distance of the mesh from the origin (its radii)",
                       .y_axis = "leaks per 100,000 rays",
                       .points = {}};
-    for (const float distance : {1e0f, 1e1f, 1e2f, 1e3f, 1e4f, 1e5f}) {
+    for (const float distance : {1e0f, 1e2f, 1e3f, 1e5f}) {
       CAPTURE(distance);
       std::mt19937 rng(14);
       const glm::vec3 eye = distance * glm::normalize(glm::vec3(2, -4, 1));
