@@ -56,7 +56,9 @@ def validation_page(groups, command):
     """groups: (what is compared, [Comparison]); the tests must accept the first and find the others."""
     lines = ['# What the comparison with Mitsuba 3 accepts and finds', '',
              'How many pictures fail each test of perf/peers/welch.py. The first rows compare a renderer with itself, '
-             'half of its seeds with the other half: no test should fail. The last ones plant an error in Lanewise\'s.', '',
+             'half of its seeds with the other half: no test should fail. The last ones plant an error in Lanewise\'s. '
+             'Even 0.3% shows in pixels, in those that see the light alone and have no noise; elsewhere blocks find '
+             'more.', '',
              f'    {command}', '',
              '| compared | pictures | pixels | shares | blocks | p < 0.05, mean % |', '|---|---|---|---|---|---|']
     for what, comparisons in groups:

@@ -93,8 +93,8 @@ class Subject:
 def sample_sentence(arguments):
     share = f' times {arguments.share:g}' * (arguments.share != 1)
     return (f'{WIDTH} x {HEIGHT} pixels, {arguments.rounds * ROUND} seeds of 36 samples a pixel (16 in scenes that are '
-            f'diffuse throughout){share}; for blocks and means {1 + MORE} times that of Lanewise, of which no sample was '
-            'NaN, infinite or negative.')
+            f'diffuse throughout){share}; for blocks and means {1 + MORE} times that of Lanewise, of which no sample '
+            'was NaN, infinite or negative.')
 
 
 class Store:
