@@ -24,7 +24,7 @@ using std::numbers::pi;
 #ifdef NDEBUG
 constexpr uint32_t kSpp = 128;
 #else
-constexpr uint32_t kSpp = 8;
+constexpr uint32_t kSpp = 32;
 #endif
 
 Settings small() {

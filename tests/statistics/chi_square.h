@@ -15,8 +15,10 @@ namespace lanewise::test {
 
 #ifdef NDEBUG
 constexpr uint32_t kDraws = 1 << 18;  // by each test of a sampler
+constexpr uint32_t kLobeSide = 40;    // cells along each side of a lobe
 #else
 constexpr uint32_t kDraws = 1 << 14;
+constexpr uint32_t kLobeSide = 20;
 #endif
 
 struct Interval {

@@ -53,7 +53,7 @@ Domain lobe(const Vec& wo, double alpha, const OfDirection& value) {
     const double far = tan + std::sqrt(root2);
     return {(m2 - 1) / far / alpha, far / alpha};
   };
-  return {{-5, 5}, {-5, 5}, 40, 40, density, support};
+  return {{-5, 5}, {-5, 5}, kLobeSide, kLobeSide, density, support};
 }
 
 }  // namespace lanewise::test::lobes
