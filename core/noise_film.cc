@@ -12,7 +12,7 @@ NoiseFilm::NoiseFilm(uint32_t width, uint32_t height, const Window& window, doub
       height_(height),
       window_(window),
       noise_(noise),
-      max_drawn_(max_samples / kHalves),
+      max_drawn_(std::min(max_samples, kMaxSamples) / kHalves),
       count_(std::min(kFirstSamples, max_drawn_)) {
   // The window's blocks, and those around them.
   const auto reach = [](uint32_t begin, uint32_t size, uint32_t end, uint32_t& first, uint32_t& blocks) {

@@ -25,14 +25,19 @@ class NoiseFilm {
   static constexpr double kLeastLuminance = 0.01;  // added to means, so that black blocks end: as in the measure MRSE
 
   // Draws the blocks that can have a say in the window's pixels, of a picture of width x height. noise: the standard error
-  // that luminance may keep, relative to itself + kLeastLuminance, root mean square over a block. max_samples: of a pixel, at
-  // least 2 kFirstSamples; odd ones are rounded down.
+  // that luminance may keep, relative to itself + kLeastLuminance, root mean square over a block. max_samples: of a pixel,
+  // from 2 kFirstSamples to kMaxSamples; odd ones are rounded down, larger ones cut off.
   NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint32_t max_samples);
+
+  // Where the numbers of a half's samples begin. Not 2^31 apart: a difference in the top bit alone reaches only the top bits
+  // of the hash that makes the random numbers, and leaves the halves correlated.
+  static constexpr uint32_t kHalfStart[kHalves] = {0, 0x9E3779B9};
+  static constexpr uint32_t kMaxSamples = 1u << 31;  // of a pixel, so that the halves do not meet
 
   // The round to draw now: of every pixel of the list drawing(half), count() samples from number first(half) on, added to
   // sums(half)[pixel]. Then end_round(). When count() is 0 there is no more.
   uint32_t count() const { return count_; }
-  uint32_t first(uint32_t half) const { return half << 31 | drawn_; }
+  uint32_t first(uint32_t half) const { return kHalfStart[half] + drawn_; }
   std::vector<uint32_t> drawing(uint32_t half) const;
   PixelSums* sums(uint32_t half) { return halves_[half].sums.data(); }
   void end_round();
