@@ -1,6 +1,7 @@
 // Elementary functions in float. The order of operations is fixed and has no width in it, so targets with the same
 // arithmetic (AVX2 and AVX-512 fuse, SSE4 and scalar do not) give the same bits. The polynomials are minimax fits in
-// relative error (Lawson's weights), their coefficients rounded one after the other with the rest fitted again.
+// relative error (Lawson's weights), their coefficients rounded one after the other with the rest fitted again. The largest
+// errors are stated in kernels/functions.h and measured on every float of the domains: perf/results/functions.md.
 #if defined(LANEWISE_KERNELS_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LANEWISE_KERNELS_MATH_INL_H_
 #undef LANEWISE_KERNELS_MATH_INL_H_
@@ -16,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 HWY_INLINE VF Clamp(VF x, float lo, float hi) { return hn::Min(hn::Max(x, Splat(lo)), Splat(hi)); }
 
-// sin(2 pi u) and cos(2 pi u) for u in [0, 1]; max error 2 ulp each, also beside their zeros.
+// sin(2 pi u) and cos(2 pi u) for u in [0, 1], good also beside their zeros.
 HWY_INLINE void SinCos2Pi(VF u, VF& sin, VF& cos) {
   const DF d;
   const DI di;
@@ -40,7 +41,7 @@ HWY_INLINE void SinCos2Pi(VF u, VF& sin, VF& cos) {
   cos = hn::Xor(hn::IfThenElse(swap, s, c), cos_sign);
 }
 
-// e^x for x <= 88, -inf included; 0 where e^x < 2^-126. Max error 2 ulp.
+// e^x for x <= 88, -inf included; 0 below -87.3365, where e^x comes to the smallest normal float.
 HWY_INLINE VF Exp(VF x) {
   const DF d;
   const VF kept = hn::Max(x, Splat(-87.3365f));
@@ -57,7 +58,7 @@ HWY_INLINE VF Exp(VF x) {
   return hn::IfThenElseZero(hn::Ge(x, Splat(-87.3365f)), hn::Mul(fraction, power));
 }
 
-// ln x for normal x > 0; max error 2 ulp, also beside x = 1.
+// ln x for normal x > 0, good also beside x = 1.
 HWY_INLINE VF Log(VF x) {
   const DF d;
   const DI di;
@@ -79,8 +80,7 @@ HWY_INLINE VF Log(VF x) {
   return hn::MulAdd(whole, Splat(0.693359375f), hn::Add(f, tail));
 }
 
-// e^(x^2) erfc(x) for x in [0, 10]; max error 8 ulp (5e-7). erfc(x) is this times Exp(-x^2), with no cancellation
-// anywhere.
+// e^(x^2) erfc(x) for x in [0, 10]. erfc(x) is this times Exp(-x^2), with no cancellation anywhere.
 HWY_INLINE VF Erfcx(VF x) {
   const VF t = hn::Div(Splat(1.0f), hn::MulAdd(Splat(0.4f), x, Splat(1.0f)));
   VF p = hn::MulAdd(t, Splat(-0.029593058f), Splat(0.1980063f));
@@ -95,7 +95,7 @@ HWY_INLINE VF Erfcx(VF x) {
   return hn::Mul(t, p);
 }
 
-// erf^-1(2 u - 1) for u in [2^-25, 1): maps a uniform number to one of density e^(-y^2) / sqrt(pi). Max error 5 ulp.
+// erf^-1(2 u - 1) for u in [2^-25, 1): maps a uniform number to one of density e^(-y^2) / sqrt(pi).
 // Two polynomials in w = -ln(4 u (1 - u)) as in Giles, Approximating the erfinv function, GPU Computing Gems 2, 2011.
 HWY_INLINE VF ErfInvCentered(VF u) {
   const VF w = hn::Neg(Log(hn::Mul(hn::Mul(Splat(4.0f), u), hn::Sub(Splat(1.0f), u))));

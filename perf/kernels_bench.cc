@@ -20,8 +20,8 @@
 #include "kernels/reference/shade_microfacet.h"
 #include "kernels/reference/shade_mirror.h"
 #include "kernels/reference/surface.h"
-#include "tests/random_path.h"
-#include "tests/test_scene.h"
+#include "core/verify/random_path.h"
+#include "core/verify/test_scene.h"
 
 namespace lanewise {
 namespace {

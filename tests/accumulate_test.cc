@@ -64,12 +64,7 @@ TEST_CASE("accumulate: the same bits however samples are cut into waves; invalid
         invalid += accumulate(s, film.data());
       }
       CHECK(invalid == 3);
-      bool same = true;
-      for (uint32_t i = 0; i < kPixels; ++i) {
-        same &= film[i].r == want[i].r && film[i].g == want[i].g && film[i].b == want[i].b &&
-                film[i].dy == want[i].dy && film[i].dy2 == want[i].dy2;
-      }
-      CHECK(same);
+      CHECK(film == want);
     }
   });
 }

@@ -90,14 +90,7 @@ std::vector<Triangle> cube() {
 
 TEST_CASE("intersect: SIMD against its twin") {
   const Plan plan = test::test_plan();
-  test::KernelCase kernel{.kernel = intersect,
-                          .twin = reference::intersect<float>,
-                          .writes = {{"prim"}, {"bin"}, {"t", 1e-5, 1e-4}, {"u", 2e-4}, {"v", 2e-4}}};
-  kernel.borderline = [&](const Path<float>&, const Path<float>& after) { return borderline(plan, after); };
-  kernel.max_borderline = 0.03;
-  test::check_kernel(plan, kernel, [](std::mt19937& rng, Path<float>& p) {
-    if (rng() % 5 == 0) p.beta_r = p.beta_g = p.beta_b = 0;
-  });
+  test::check_kernel(plan, "intersect");
 }
 
 TEST_CASE(

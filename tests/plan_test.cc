@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/scene.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 namespace lanewise {
 

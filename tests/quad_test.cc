@@ -7,7 +7,7 @@
 #include "kernels/reference/sample_light.h"
 #include "kernels/reference/surface.h"
 #include "tests/kernel_harness.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 #include "tests/trace_plan.h"
 
 namespace lanewise {

@@ -7,7 +7,7 @@
 
 #include "core/image_compare.h"
 #include "tests/kernel_harness.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 namespace lanewise {
 namespace {

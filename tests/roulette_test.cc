@@ -8,22 +8,19 @@ namespace lanewise {
 
 TEST_CASE("roulette: SIMD against its twin") {
   const Plan plan = test::test_plan();
-  test::KernelCase test{.kernel = roulette,
-                        .twin = reference::roulette<float>,
-                        .writes = {{"beta_r", 0, 1e-6}, {"beta_g", 0, 1e-6}, {"beta_b", 0, 1e-6}}};
-  test.step.bounce = kRouletteBounce;
-  test::check_kernel(plan, test);
-  test::check_kernel(plan, test, [](std::mt19937& rng, Path<float>& p) {
+  const Step step = {.bounce = kRouletteBounce};
+  test::check_kernel(plan, "roulette", step);
+  test::check_kernel(plan, "roulette", step, [](std::mt19937& rng, Path<float>& p) {
     const float scale = rng() % 2 ? 0.0f : 1e-20f;
     p.beta_r *= scale, p.beta_g *= scale, p.beta_b *= scale;
   });
 }
 
 TEST_CASE("roulette: none before its first bounce") {
-  const Plan plan = test::test_plan();
-  test::KernelCase test{.kernel = roulette, .twin = [](const Plan&, Path<float>&) {}, .writes = {}};
-  test.step.bounce = kRouletteBounce - 1;
-  test::check_kernel(plan, test);
+  static constexpr KernelBounds kNone = {};
+  verify::KernelCase none = {"roulette", roulette, [](const Plan&, Path<double>&) {},
+                             kNone,      "",       verify::kernel_case("roulette").fill};
+  test::check_kernel(test::test_plan(), none, {.bounce = kRouletteBounce - 1});
 }
 
 TEST_CASE("roulette: the expected throughput is the throughput") {

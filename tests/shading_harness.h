@@ -9,6 +9,7 @@
 
 #include "core/path_buffer.h"
 #include "core/plan.h"
+#include "core/verify/random_path.h"
 #include "kernels/reference/vec3.h"
 
 namespace lanewise::test {
@@ -56,18 +57,6 @@ inline PlanMaterial gold(float alpha) {
 }
 // Index 0: every facet reflects all.
 inline PlanMaterial white_metal(float alpha) { return metal(alpha, {0, 0, 0}, {0, 0, 0}); }
-
-// Turns the path to arrive at the given cosine to its shading normal: positive from its front, negative from behind.
-inline void arrive(std::mt19937& rng, Path<float>& p, float cosine) {
-  using reference::Vec3;
-  std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi);
-  const Vec3<double> s = glm::normalize(Vec3<double>(p.s_x, p.s_y, p.s_z));
-  Vec3<double> b1, b2;
-  reference::frame(s, b1, b2);
-  const double phi = turn(rng), sine = std::sqrt(std::max(0.0, 1 - double(cosine) * cosine));
-  const Vec3<double> d = -reference::to_world<double>({sine * std::cos(phi), sine * std::sin(phi), cosine}, b1, b2, s);
-  p.d_x = static_cast<float>(d.x), p.d_y = static_cast<float>(d.y), p.d_z = static_cast<float>(d.z);
-}
 
 // n paths that hit prim 0 at the origin, n = s = +z, arriving at cosine `cosine` in the xz plane, beta = 1; each a
 // sample.

@@ -28,6 +28,7 @@ void run(int argc, char** argv) {
   app.footer("lanewise COMMAND --help tells more.");
   add_render_command(app, quoted_command_line(argc, argv));
   add_compare_command(app);
+  add_verify_command(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {
     throw UsageError("'" + std::string(argv[1]) + "' is not a command; see lanewise --help");

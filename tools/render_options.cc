@@ -63,8 +63,9 @@ void add_sampling_flags(CLI::App& app, RenderOptions& o) {
       ->check(whole_number(1, kSetsPerBounce - kSetLight))
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("-a,--adaptive", o.adaptive,
-                 "Stop a pixel whose mean is known to within the share TOL (95%); look after every BATCH samples")
+  app.add_option(
+         "-a,--adaptive", o.adaptive,
+         "Stop a pixel whose mean is known to within the share TOL (95%); look after every BATCH samples. Biased low")
       ->check(whole_number(1, kMaxCount).application_index(0))
       ->check(real_number(0, 10).application_index(1))
       ->type_name("BATCH TOL");

@@ -10,7 +10,7 @@
 #include "core/render.h"
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 #include "tests/trace_plan.h"
 
 namespace lanewise {

@@ -11,7 +11,7 @@
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
 #include "tests/stability/fixed_epsilon.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 namespace lanewise {
 namespace {

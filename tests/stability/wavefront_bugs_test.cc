@@ -13,7 +13,7 @@
 #include "tests/kernel_harness.h"
 #include "tests/stability/cavity.h"
 #include "tests/stability/curve.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 namespace lanewise {
 namespace {

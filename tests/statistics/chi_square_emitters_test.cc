@@ -9,7 +9,7 @@
 #include "tests/kernel_harness.h"
 #include "tests/shading_harness.h"
 #include "tests/statistics/chi_square.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 TEST_SUITE_BEGIN("statistics");
 

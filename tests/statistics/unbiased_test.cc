@@ -13,7 +13,7 @@
 #include "tests/kernel_harness.h"
 #include "tests/scene_paths.h"
 #include "tests/statistics/renders.h"
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 TEST_SUITE_BEGIN("statistics");
 

@@ -1,4 +1,4 @@
-#include "tests/test_scene.h"
+#include "core/verify/test_scene.h"
 
 #include <cmath>
 #include <numbers>

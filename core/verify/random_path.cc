@@ -1,4 +1,8 @@
-#include "tests/random_path.h"
+#include "core/verify/random_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "kernels/reference/vec3.h"
 
@@ -38,6 +42,17 @@ void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t i
   LANEWISE_SET_VEC3(p, l, (0.1f + unit(rng)) * random_unit(rng));
   p.l_pdf = rng() % 8 == 0 ? 0.0f : 0.01f + 2 * unit(rng);
   LANEWISE_SET_RGB(p, c, glm::vec3(unit(rng), unit(rng), unit(rng)));
+}
+
+void arrive(std::mt19937& rng, Path<float>& p, float cosine) {
+  using reference::Vec3;
+  std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi);
+  const Vec3<double> s = glm::normalize(Vec3<double>(p.s_x, p.s_y, p.s_z));
+  Vec3<double> b1, b2;
+  reference::frame(s, b1, b2);
+  const double phi = turn(rng), sine = std::sqrt(std::max(0.0, 1 - double(cosine) * cosine));
+  const Vec3<double> d = -reference::to_world<double>({sine * std::cos(phi), sine * std::sin(phi), cosine}, b1, b2, s);
+  p.d_x = static_cast<float>(d.x), p.d_y = static_cast<float>(d.y), p.d_z = static_cast<float>(d.z);
 }
 
 }  // namespace lanewise::test

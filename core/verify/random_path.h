@@ -12,4 +12,7 @@ namespace lanewise::test {
 // of the plan, distinct pixels, samples and slots.
 void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t index);
 
+// Turns the path to arrive at the given cosine to its shading normal: positive from its front, negative from behind.
+void arrive(std::mt19937& rng, Path<float>& p, float cosine);
+
 }  // namespace lanewise::test

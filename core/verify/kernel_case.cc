@@ -1,0 +1,79 @@
+#include "core/verify/kernel_case.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "core/verify/fills.h"
+#include "kernels/reference/emission.h"
+#include "kernels/reference/gather_emission.h"
+#include "kernels/reference/generate.h"
+#include "kernels/reference/intersect.h"
+#include "kernels/reference/occlude.h"
+#include "kernels/reference/roulette.h"
+#include "kernels/reference/sample_hemisphere.h"
+#include "kernels/reference/sample_light.h"
+#include "kernels/reference/shade_diffuse.h"
+#include "kernels/reference/shade_glass.h"
+#include "kernels/reference/shade_microfacet.h"
+#include "kernels/reference/shade_mirror.h"
+#include "kernels/reference/surface.h"
+
+namespace lanewise::verify {
+namespace {
+
+// The pixels come from the paths, one sample each.
+void generate_batch(const Plan& plan, const PathState& s, Range range) {
+  const std::vector<uint32_t> pixels(s.pixel, s.pixel + range.end);
+  PathState with_batch = s;
+  with_batch.batch = {.pixels = pixels.data(), .samples = 1, .first_sample = s.sample[range.begin], .paths = range.end};
+  generate(plan, with_batch, range);
+}
+
+template <Bin kBin, auto kFill>
+void fill_of_bin(const Plan& plan, std::mt19937& rng, Path<float>& p) {
+  kFill(plan, rng, p);
+  set_prim(plan, rng, p, kBin);
+}
+
+namespace twin = reference;
+constexpr auto kLight = fill_light_sample;
+constexpr auto kShade = fill_shading_point;
+
+const KernelCase kCases[] = {
+    {"generate", generate_batch, twin::generate<double>, kGenerateBounds, "", fill_camera_path},
+    {"intersect", intersect, twin::intersect<double>, kIntersectBounds, "o d", fill_ray},
+    {"emission", emission, twin::emission<double>, kEmissionBounds, "t o d pdf", fill_emitter_hit},
+    {"surface", surface, twin::surface<double>, kSurfaceBounds, "t u v o d", fill_hit},
+    {"sample_light", sample_light, twin::sample_light<double>, kSampleLightBounds, "o n", fill_shading_point},
+    {"sample_hemisphere", sample_hemisphere, twin::sample_hemisphere<double>, kSampleHemisphereBounds, "d s",
+     fill_shading_point},
+    {"light_diffuse", light_diffuse, twin::light_diffuse<double>, kLightDiffuseBounds, "d s l l_pdf",
+     fill_of_bin<kDiffuse, kLight>},
+    {"shade_diffuse", shade_diffuse, twin::shade_diffuse<double>, kShadeDiffuseBounds, "o d n s",
+     fill_of_bin<kDiffuse, kShade>},
+    {"light_microfacet", light_microfacet, twin::light_microfacet<double>, kLightMicrofacetBounds, "d s l l_pdf",
+     fill_of_bin<kMicrofacet, kLight>},
+    {"shade_microfacet", shade_microfacet, twin::shade_microfacet<double>, kShadeMicrofacetBounds, "o d n s",
+     fill_of_bin<kMicrofacet, kShade>},
+    {"shade_mirror", shade_mirror, twin::shade_mirror<double>, kShadeMirrorBounds, "o d n s",
+     fill_of_bin<kMirror, kShade>},
+    {"shade_glass", shade_glass, twin::shade_glass<double>, kShadeGlassBounds, "o d n s", fill_of_bin<kGlass, kShade>},
+    {"occlude", occlude, twin::occlude<double>, kOccludeBounds, "o n l", fill_shadow_ray},
+    {"gather_emission", gather_emission, twin::gather_emission<double>, kGatherEmissionBounds, "o n l",
+     fill_shadow_ray},
+    {"roulette", roulette, twin::roulette<double>, kRouletteBounds, "beta", fill_throughput},
+};
+
+}  // namespace
+
+std::span<const KernelCase> kernel_cases() { return kCases; }
+
+const KernelCase& kernel_case(const std::string& name) {
+  for (const KernelCase& c : kCases) {
+    if (c.name == name) return c;
+  }
+  throw std::logic_error("no kernel " + name);
+}
+
+}  // namespace lanewise::verify
