@@ -35,7 +35,8 @@ def page(rows, samples, command):
     first = everything[0]
     total, invalid = (sum(s[key] for s in everything) for key in ('samples', 'invalid_samples'))
     lines = ['# Invalid samples', '',
-             f'**{invalid} of {total:,} samples** are NaN, infinite or negative: {len(rows)} course scenes, '
+             f'**{invalid} of {total:,} samples** are NaN, infinite or negative: {len(everything)} renders '
+             f'of {len(rows)} course scenes, '
              f'{first["width"]} x {first["height"]} pixels, {samples} samples a pixel, smooth normals, {first["isa"]}, '
              f'Lanewise {first["version"]}.', '', f'    {command}', '',
              '| scene | ' + ' | '.join(f'-m {d}' for d in DEPTHS) + ' | rays, million | s |',
