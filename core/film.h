@@ -26,8 +26,8 @@ double mean_luminance(const PixelSums& sums, uint32_t samples);
 double luminance_variance(const PixelSums& sums, uint32_t samples);
 
 // The rule of -a: whether a pixel's 95% confidence interval is within the tolerance, 1.96 sigma / sqrt(n) <= tolerance * mean.
-// It looks at the samples that the picture is made of, so it stops sooner where they happen to be dark: biased low, by as
-// much as tolerance^2 on skewed pixels. A NaN never converges.
+// It looks at the samples that the picture is made of, so it stops sooner where they happen to be dark: biased low, on
+// skewed pixels by far more than the tolerance (perf/results/adaptive_bias.md). A NaN never converges.
 bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance);
 
 }  // namespace lanewise

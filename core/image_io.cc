@@ -163,6 +163,8 @@ std::string encode(const std::string& path, const Image& image,
 
 }  // namespace
 
+bool holds_colours(const std::string& path) { return format_of(path) == Format::kPng; }
+
 void check_image_extension(const std::string& path) { format_of(path); }
 
 void check_image_writable(const std::string& path) { check_writable(path); }

@@ -40,6 +40,10 @@ void NoiseFilm::for_each_pixel(uint32_t block, const F& f) const {
   }
 }
 
+uint32_t NoiseFilm::block_of(uint32_t x, uint32_t y) const {
+  return (y / kBlock - blocks_.y) * blocks_.width + x / kBlock - blocks_.x;
+}
+
 std::vector<uint32_t> NoiseFilm::drawing(uint32_t half) const {
   std::vector<uint32_t> pixels;
   for (uint32_t b = 0; b < halves_[half].samples.size(); ++b) {
@@ -135,7 +139,7 @@ std::vector<uint32_t> NoiseFilm::sample_counts() const {
   std::vector<uint32_t> counts;
   for (uint32_t y = window_.y; y < window_.y + window_.height; ++y) {
     for (uint32_t x = window_.x; x < window_.x + window_.width; ++x) {
-      const size_t b = size_t{y / kBlock - blocks_.y} * blocks_.width + x / kBlock - blocks_.x;
+      const uint32_t b = block_of(x, y);
       counts.push_back(halves_[0].samples[b] + halves_[1].samples[b]);
     }
   }
@@ -143,15 +147,14 @@ std::vector<uint32_t> NoiseFilm::sample_counts() const {
 }
 
 double NoiseFilm::converged() const {
-  uint32_t all = 0, converged = 0;
-  for (uint32_t y = window_.y / kBlock; y * kBlock < window_.y + window_.height; ++y) {
-    for (uint32_t x = window_.x / kBlock; x * kBlock < window_.x + window_.width; ++x) {
-      const size_t b = size_t{y - blocks_.y} * blocks_.width + x - blocks_.x;
+  uint64_t converged = 0;
+  for (uint32_t y = window_.y; y < window_.y + window_.height; ++y) {
+    for (uint32_t x = window_.x; x < window_.x + window_.width; ++x) {
+      const uint32_t b = block_of(x, y);
       converged += halves_[0].converged[b] && halves_[1].converged[b];
-      ++all;
     }
   }
-  return static_cast<double>(converged) / all;
+  return static_cast<double>(converged) / static_cast<double>(uint64_t{window_.width} * window_.height);
 }
 
 }  // namespace lanewise

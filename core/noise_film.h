@@ -2,9 +2,9 @@
 //
 // A pixel's samples come in two independent halves. Each half's estimate ends when the *other* half says so, and the picture
 // is the mean of the two estimates. How many samples an estimate has is thus independent of their values, and so its
-// expectation is the pixel's true value, whatever the rule: the bias is exactly 0. What a half says is said of blocks of
-// pixels, all of whose samples see more than one pixel's, and a block goes on as long as any block around it does: so the rule
-// does not stop where a rare bright path has not been met yet.
+// expectation is the pixel's true value, whatever the rule: the bias is exactly 0. A half speaks for whole blocks of pixels,
+// whose samples together see more than one pixel's do, and a block goes on as long as any block around it does: so the rule
+// seldom stops where a rare bright path has not been met yet.
 #pragma once
 
 #include <array>
@@ -46,8 +46,8 @@ class NoiseFilm {
   double drawn() const { return total_; }
   double expected() const { return total_ + left_; }
 
-  // Of the window: its picture, the samples drawn for each pixel, and the share of its blocks that came to the noise asked for
-  // before max_samples.
+  // Of the window: its picture, the samples drawn for each pixel, and the share of its pixels whose block came to the noise
+  // asked for before max_samples.
   Image develop() const;
   std::vector<uint32_t> sample_counts() const;
   double converged() const;
@@ -69,6 +69,7 @@ class NoiseFilm {
   bool converged_around(const Half& half, uint32_t block) const;
   template <class F>
   void for_each_pixel(uint32_t block, const F& f) const;
+  uint32_t block_of(uint32_t x, uint32_t y) const;
 
   uint32_t width_, height_;
   Window window_;

@@ -94,7 +94,7 @@ struct PathState {
 template <class T, class Field>
 using PathField = std::conditional_t<std::is_same_v<Field, float>, T, Field>;
 
-// The AoS form, for the scalar twins: T is float (what the SIMD kernels must reproduce) or double (the oracle).
+// The AoS form, for the scalar twins: T is float (the scalar renderer, benchmarks) or double (what kernels are held against).
 template <class T>
 struct Path {
 #define LANEWISE_MEMBER(type, name, meaning) PathField<T, type> name{};

@@ -29,9 +29,10 @@ struct RenderStats {
   uint64_t invalid_samples = 0;           // NaN, Inf or negative radiance: counted as 0 in the picture
   std::vector<uint64_t> paths_by_length;  // [k]: paths of k scattering events; sums to samples
   std::vector<StageStats> stages;
-  double converged = 1;  // share of the pixels that reached what -a or --noise asks for
-  double seconds = 0;    // wall clock of rendering alone
-  uint32_t threads = 0;  // that did some of the work
+  double samples_per_pixel = 0;  // mean over the picture; samples counts also those around a crop that --noise looks at
+  double converged = 1;          // share of the pixels that reached what -a or --noise asks for
+  double seconds = 0;            // wall clock of rendering alone
+  uint32_t threads = 0;          // that did some of the work
 };
 
 struct Progress {

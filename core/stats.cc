@@ -1,6 +1,7 @@
 #include "core/stats.h"
 
 #include <algorithm>
+#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -39,6 +40,8 @@ RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles
     threads += profile.samples > 0;
   }
   RenderResult result{std::move(exposure.image), std::move(exposure.samples), make_stats(all)};
+  const double drawn = std::accumulate(result.samples.begin(), result.samples.end(), 0.0);
+  result.stats.samples_per_pixel = drawn / static_cast<double>(result.samples.size());
   result.stats.converged = exposure.converged;
   result.stats.threads = threads;
   result.stats.seconds = elapsed.count();

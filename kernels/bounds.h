@@ -19,8 +19,8 @@ enum class Unit : uint8_t {
 };
 
 // field: a name of LANEWISE_PATH_FIELDS without its _x or _r. o d n s l are measured as vectors, beta L c channel by channel.
-// max: the most units that any path may be off, on any target. negligible: what is off by less, in the field's own unit, is
-// not off.
+// max: the most units that any path may be off, on any target. negligible: an absolute error up to this counts as
+// none.
 struct FieldBound {
   const char* field = nullptr;
   Unit unit = Unit::kExact;
@@ -47,7 +47,7 @@ struct ChoiceBound {
 
 // What is not listed keeps its bits.
 struct KernelBounds {
-  static constexpr int kMost = 6;
+  static constexpr int kMost = 7;
   FieldBound fields[kMost];  // those without a name are unused
   ChoiceBound choice{};
 };

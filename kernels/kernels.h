@@ -23,8 +23,8 @@ using Kernel = void(const Plan&, const PathState&, Range);
 // lens and through the point where the ray from the eye meets the plane in focus.
 // reads: batch. writes: pixel sample slot o d beta L pdf.
 void generate(const Plan& plan, const PathState& s, Range range);
-constexpr KernelBounds kGenerateBounds = {
-    .fields = {exact("pixel"), exact("sample"), reach_ulps("o", 1), exact("beta"), exact("pdf"), ulps("d", 3)}};
+constexpr KernelBounds kGenerateBounds = {.fields = {exact("pixel"), exact("sample"), reach_ulps("o", 0.25),
+                                                     exact("beta"), exact("L"), exact("pdf"), ulps("d", 2.5)}};
 
 // Closest hit. Triangles are watertight (edge tests with exact signs after Woop, Benthin & Wald, JCGT 2013), spheres by the
 // stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path with beta = 0
@@ -64,7 +64,7 @@ Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
 // reads: prim t o d beta pdf L. writes: L.
 void emission(const Plan& plan, const PathState& s, Range range);
 // Hangs on the cosine at grazing angles; front or back is a choice.
-constexpr KernelBounds kEmissionBounds = {.fields = {input_ulps("L", 3)}, .choice = {.margin = 4, .max_share = 1e-3}};
+constexpr KernelBounds kEmissionBounds = {.fields = {input_ulps("L", 3)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Hands the radiance of finished paths over to the wave's result, by slot.
 // reads: slot L. writes: result.
@@ -84,7 +84,7 @@ void sample_light(const Plan& plan, const PathState& s, Range range);
 // The density has no bound in the light's own plane; its inverse, which is what c is made with, goes to 0 there. The choice is
 // the side that the origin is moved to.
 constexpr KernelBounds kSampleLightBounds = {.fields = {reach_ulps("l", 2.5), inverse_input_ulps("l_pdf", 3)},
-                                             .choice = {.margin = 4, .max_share = 1e-3}};
+                                             .choice = {.margin = 4, .max_share = 2e-4}};
 
 // -H: aims uniformly into the hemisphere around the viewer's side of the shading normal; l is a unit vector.
 // reads: pixel sample d s, step. writes: l l_pdf.
@@ -99,46 +99,47 @@ constexpr KernelBounds kSampleHemisphereBounds = {.fields = {ulps("l", 3), exact
 void light_diffuse(const Plan& plan, const PathState& s, Range range);
 // Hangs on the cosine at grazing angles.
 constexpr KernelBounds kLightDiffuseBounds = {.fields = {input_ulps("c", 4)},
-                                              .choice = {.margin = 4, .max_share = 1e-3}};
+                                              .choice = {.margin = 4, .max_share = 2e-4}};
 void shade_diffuse(const Plan& plan, const PathState& s, Range range);
 // The choices, here and for the other materials: the side that the path arrives from, and the side that the origin is moved to.
 constexpr KernelBounds kShadeDiffuseBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 2.5), ulps("pdf", 3)},
-                                              .choice = {.margin = 4, .max_share = 1e-3}};
+                                              .choice = {.margin = 4, .max_share = 2e-4}};
 // Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
 void light_microfacet(const Plan& plan, const PathState& s, Range range);
-// Beckmann's exponent, tan^2 / alpha^2, hangs on the last bits of every direction when alpha is small; where e^x is below
-// float's range it counts as 0.
+// Beckmann's exponent, tan^2 / alpha^2, hangs on the last bits of every direction when alpha is small, and those of the half
+// vector, rounded on the way, add to what moving the directions shows: so above 4 ulp. Where e^x is below float's range it
+// counts as 0.
 constexpr KernelBounds kLightMicrofacetBounds = {.fields = {input_ulps("c", 7, 1e-24)},
-                                                 .choice = {.margin = 4, .max_share = 1e-3}};
+                                                 .choice = {.margin = 4, .max_share = 2e-4}};
 void shade_microfacet(const Plan& plan, const PathState& s, Range range);
 // Above 4 ulp: a visible slope is where its distribution, which a float knows to 1e-6, takes a value, and in the tails small
 // errors of it move the slope. That the pdf is the density of the direction that was really sampled does not hang on this.
 constexpr KernelBounds kShadeMicrofacetBounds = {
     .fields = {input_ulps("beta", 160, 1e-24), ulps("o", 0.9), input_ulps("d", 64), input_ulps("pdf", 13)},
-    .choice = {.margin = 4, .max_share = 1e-3}};
+    .choice = {.margin = 4, .max_share = 2e-4}};
 // Perfect reflection; pdf = 0 (delta).
 void shade_mirror(const Plan& plan, const PathState& s, Range range);
 constexpr KernelBounds kShadeMirrorBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 3), exact("pdf")},
-                                             .choice = {.margin = 4, .max_share = 1e-3}};
+                                             .choice = {.margin = 4, .max_share = 2e-4}};
 // Smooth dielectric: reflects or refracts by the Fresnel reflectance; refracted radiance scales with the squared ratio
 // of indices (Veach 1997, ch. 5); pdf = 0 (delta).
 void shade_glass(const Plan& plan, const PathState& s, Range range);
 // The refracted direction hangs on a root near the critical angle. A choice is also that of the lobe.
 constexpr KernelBounds kShadeGlassBounds = {
     .fields = {ulps("beta", 3), ulps("o", 0.9), input_ulps("d", 1), exact("pdf")},
-    .choice = {.margin = 4, .max_share = 1e-3}};
+    .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Any hit on the open segment from the offset hit point to the light sample: if there is none, L += c. Not traced where
 // c = 0. Faces that cannot block light between points of the scene are left out: the plan knows which.
 // reads: o n err l c L. writes: L.
 void occlude(const Plan& plan, const PathState& s, Range range);
 // The choice: blocked or not.
-constexpr KernelBounds kOccludeBounds = {.fields = {ulps("L", 1)}, .choice = {.margin = 4, .max_share = 1e-3}};
+constexpr KernelBounds kOccludeBounds = {.fields = {ulps("L", 1)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
 // -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter. Not traced where c = 0.
 // reads: o n err l c L. writes: L.
 void gather_emission(const Plan& plan, const PathState& s, Range range);
-constexpr KernelBounds kGatherEmissionBounds = {.fields = {ulps("L", 2)}, .choice = {.margin = 4, .max_share = 1e-3}};
+constexpr KernelBounds kGatherEmissionBounds = {.fields = {ulps("L", 2)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Russian roulette from bounce kRouletteBounce on: survives with probability q = min(1, max channel of beta) and beta / q,
 // else beta = 0; unbiased for every q. So it never lifts a throughput above 1, and what ends a path of throughput 1 is

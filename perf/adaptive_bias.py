@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Bias of the two stopping rules, -a and --noise: many independent renders of small pictures against a reference.
 
-    perf/adaptive_bias.py [--renders 64] [--scenes FOLDER]
+    perf/adaptive_bias.py [--renders 64] [--scenes FILE...]
 
 For each scene, rule and target it renders with K seeds and compares the mean of all renders with a reference of a fixed
 number of samples. The bias counts where it is not small beside the standard error of one render, that is the noise which
-the rule leaves in the mean of the picture. Writes perf/results/adaptive_bias.{json,md,svg}. Needs tools/build and
-tools/setup charts; takes some 20 minutes on two cores.
+the rule leaves in the mean of the picture. Writes perf/results/adaptive_bias.{json,md,svg}; exits with 1 if the bias of
+--noise is a third of that error or more. Needs tools/build and tools/setup charts; takes some 20 minutes on two cores.
 """
 import argparse
 import json
@@ -121,7 +121,7 @@ def main():
                         default=[ROOT / 'scenes/cornell_spheres.dae', ROOT / 'scenes/cornell_metal.dae'])
     parser.add_argument('--redraw', action='store_true', help='draw from perf/results/adaptive_bias.json')
     args = parser.parse_args()
-    command = 'perf/adaptive_bias.py' + (f' --renders {args.renders}' if args.renders != 64 else '')
+    command = ' '.join(['perf/adaptive_bias.py', *sys.argv[1:]])
     data = RESULTS / 'adaptive_bias.json'
     if args.redraw:
         saved = json.loads(data.read_text())
@@ -139,7 +139,8 @@ def main():
     draw(rows, command, RESULTS / 'adaptive_bias.svg')
     worst = max(abs(r['bias'] / r['standard_error']) for r in rows if r['rule'] == '--noise')
     print(f'largest bias of --noise: {worst:.2f} standard errors of one render')
+    return 0 if worst < 1 / 3 else 1
 
 
 if __name__ == '__main__':
-    main()
+    sys.exit(main())

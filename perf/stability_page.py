@@ -169,7 +169,7 @@ instruction set at hand (the worst of them counts). The tests check the same num
 hollow marks at their ends stand for an error of exactly 0 and for an infinite one.</p>
 <p>Drawn by <code>perf/stability_page.py</code> from <code>build/lanewise_tests -ts=stability</code>;
 x in the captions is the chart's horizontal axis.</p>
-<table><thead><tr><th>MODES failure modes, and the error measured</th><th class="naive">naive, worst</th>
+<table><thead><tr><th>MODES charts of 19 failure modes, and the error measured</th><th class="naive">naive, worst</th>
 <th class="ours">ours, worst</th></tr></thead><tbody>ROWS</tbody></table>
 <main>FIGURES</main></body></html>
 """

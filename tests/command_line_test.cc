@@ -249,13 +249,13 @@ TEST_CASE("command line: --rate shows the samples of each pixel") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
   for (const Arguments& rule : {Arguments{"--noise", "0.3", "-s", "4096"}, Arguments{"-s", "64", "-a", "16", "0.5"}}) {
-    for (const char* name : {"rate.pfm", "rate.png"}) {
+    for (const char* name : {"rate.pfm", "rate.PNG"}) {
       const ProcessResult result =
           render_small(folder, Arguments{box(), "--rate", name, "--stats", "stats.json"} + rule);
       CAPTURE(result.err);
       REQUIRE(result.exit_code == 0);
     }
-    const Image counts = read_image(folder.file("rate.pfm")), colours = read_image(folder.file("rate.png"));
+    const Image counts = read_image(folder.file("rate.pfm")), colours = read_image(folder.file("rate.PNG"));
     const auto stats = nlohmann::json::parse(test::read_text(folder.file("stats.json")));
     double samples = 0;
     for (const float n : counts.rgb) samples += n / 3;

@@ -52,7 +52,9 @@ TEST_CASE("verify: a kernel that is wrong by a little is found") {
                                 shade_mirror(plan, s, range);
                                 for (uint32_t i = range.begin; i < range.end; ++i) s.d_x[i] += 1e-6f;
                               },
-                              verify::kernel_case("shade_mirror").twin, kBounds, "o d n s",
+                              verify::kernel_case("shade_mirror").twin,
+                              kBounds,
+                              "o d n s",
                               verify::kernel_case("shade_mirror").fill};
   const Plan plan = test::test_plan();
   const verify::Oracle oracle(plan, wrong);

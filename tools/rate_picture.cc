@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 
+#include "core/image_io.h"
 #include "core/srgb.h"
 
 namespace lanewise {
@@ -29,7 +29,7 @@ void set_colour(double x, float* rgb) {
 }  // namespace
 
 Image rate_picture(const std::string& path, const std::vector<uint32_t>& samples, uint32_t width, uint32_t height) {
-  const bool colours = std::filesystem::path(path).extension() == ".png";
+  const bool colours = holds_colours(path);
   const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
   const double low = std::log(*fewest), span = std::log(*most) - low;
   Image image(width, height);

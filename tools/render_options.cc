@@ -48,7 +48,7 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
                             ->default_str("a pinhole");
   CLI::Option* distance = app.add_option("-d,--focal-distance", o.settings.focal_distance,
                                          "Distance along the view axis that it shows sharp")
-                              ->check(real_number(0, 1e9))
+                              ->check(real_number(1e-6, 1e9))
                               ->type_name("D");
   radius->needs(distance);
   distance->needs(radius);
@@ -145,7 +145,7 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
       ->type_name("FILE")
       ->default_str("the scene's name.png, here");
   app.add_option("--rate", o.rate,
-                 "Picture of the samples that each pixel took: colours in a .png, their number in an .exr or .pfm")
+                 "Picture of the samples that each pixel took: colours in a .png, their number in the others")
       ->type_name("FILE");
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
   app.add_flag("-q,--quiet", o.quiet, "No progress, no summary");

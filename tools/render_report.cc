@@ -75,6 +75,7 @@ std::string stats_json(const RenderReport& r) {
       {"rays_per_second", rays_per_second(r)},
       {"peak_rss_bytes", peak_rss_bytes()},
       {"invalid_samples", s.invalid_samples},
+      {"samples_per_pixel", s.samples_per_pixel},
       {"converged", s.converged},
       {"paths_by_length", s.paths_by_length},
   };
@@ -94,13 +95,12 @@ std::string stats_json(const RenderReport& r) {
 std::string summary(const RenderReport& r) {
   const Settings& settings = r.options.settings;
   const RenderStats& s = r.stats;
-  const uint64_t pixels = uint64_t{settings.window().width} * settings.window().height;
   std::string text = r.options.scene + " -> " + r.options.output + "\n";
   text += std::to_string(settings.window().width) + " x " + std::to_string(settings.window().height) + ", ";
   const bool adaptive = settings.adaptive_batch > 0 || settings.noise > 0;
   if (adaptive) {
     char mean[32];
-    std::snprintf(mean, sizeof mean, "%.1f", static_cast<double>(s.samples) / static_cast<double>(pixels));
+    std::snprintf(mean, sizeof mean, "%.1f", s.samples_per_pixel);
     text += std::string(mean) + " of at most ";
   }
   text += count_of(settings.spp, "sample") + " per pixel, depth " + std::to_string(settings.max_depth) + ", " +

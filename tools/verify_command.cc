@@ -73,6 +73,10 @@ std::vector<Row> rows_of(const std::vector<verify::KernelResult>& results) {
       rows.push_back({r.name, f.bound.field, unit_name(f.bound.unit), r.target, f.max, f.sum / compared, f.bound.max,
                       f.max <= f.bound.max});
     }
+    if (t.changed > 0) {
+      const double changed = static_cast<double>(t.changed);
+      rows.push_back({r.name, "others", "exact", r.target, changed, changed / compared, 0, false});
+    }
     if (t.choice.max_share == 0) continue;
     const double share = static_cast<double>(t.moved) / static_cast<double>(std::max<uint64_t>(t.paths, 1));
     rows.push_back({r.name, "choice", "share", r.target, share, share, t.choice.max_share, t.choices_within_bound()});
@@ -207,7 +211,7 @@ void add_verify_command(CLI::App& app) {
       ->type_name(join_names(isas))
       ->default_str("all here");
   command->add_option("--paths", o->paths, "Paths per kernel and instruction set")
-      ->check(whole_number(1, 1u << 24))
+      ->check(whole_number(1, 1u << 21))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--seed", o->seed, "Seed of the paths")

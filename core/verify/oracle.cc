@@ -1,6 +1,7 @@
 #include "core/verify/oracle.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -55,6 +56,7 @@ void Tally::add(const Tally& other) {
   paths += other.paths;
   moved += other.moved;
   failed += other.failed;
+  changed += other.changed;
   if (first_failure.empty()) first_failure = other.first_failure;
 }
 
@@ -215,6 +217,15 @@ bool Oracle::moved(const FieldValues& before, const Step& step, const Expected& 
   return false;
 }
 
+const char* Oracle::changed(const FieldValues& before, const FieldValues& got) const {
+  for (size_t i = 0; i < kFieldCount; ++i) {
+    if (std::bit_cast<uint64_t>(before[i]) == std::bit_cast<uint64_t>(got[i])) continue;
+    const auto has = [i](const Measured& m) { return i >= m.group.first && i < m.group.first + m.group.count; };
+    if (std::none_of(measured_.begin(), measured_.end(), has)) return kFields[i].name;
+  }
+  return nullptr;
+}
+
 void Oracle::compare(const Path<float>& before, const Expected& expected, const Path<float>& got, Tally& tally) const {
   const FieldValues in = values_of(before), out = measured_values(got);
   const double reach = this->reach(in);
@@ -225,6 +236,11 @@ void Oracle::compare(const Path<float>& before, const Expected& expected, const 
     within &= errors[f] <= measured_[f].bound.max;
   }
   ++tally.paths;
+  if (const char* field = changed(in, values_of(got))) {
+    ++tally.changed;
+    if (tally.failed++ == 0) tally.first_failure = std::string(field) + " changed, and has no bound";
+    return;
+  }
   if (!within && moved(in, before.step, expected, out)) {
     ++tally.moved;
     return;

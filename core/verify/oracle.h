@@ -26,11 +26,11 @@ struct Tally {
   uint64_t paths = 0;
   uint64_t moved = 0;  // made another choice, as the twin does beside; not in the errors
   uint64_t failed = 0;
+  uint64_t changed = 0;       // of the failed: those in which a field changed its bits that has no bound
   std::string first_failure;  // of the first that failed: field, values, and the path
 
   void add(const Tally& other);
   bool choices_within_bound() const;
-  bool within_bounds() const { return failed == 0 && choices_within_bound(); }
 };
 
 class Oracle {
@@ -65,6 +65,8 @@ class Oracle {
   FieldValues slack(const FieldValues& before, const FieldValues& value, const Step& step) const;
   double reach(const FieldValues& before) const;
   double error(const Measured& m, double reach, const Expected& expected, const FieldValues& got, double extra) const;
+  // The first field without a bound whose bits differ, or null.
+  const char* changed(const FieldValues& before, const FieldValues& got) const;
   bool moved(const FieldValues& before, const Step& step, const Expected& expected, const FieldValues& got) const;
 
   const Plan& plan_;

@@ -229,6 +229,8 @@ def main():
     render_all(store, work, arguments.share, arguments.rounds)
 
     command = ' '.join(['perf/peers/unbiased.py', *sys.argv[1:]])
+    if arguments.quick and arguments.validate:
+        parser.error('--validate needs all depths: not with --quick')
     if arguments.validate:
         groups = validation(store, work, arguments.share, arguments.rounds)
         report.print_and_write('mitsuba_validation', report.validation_page(groups, command))

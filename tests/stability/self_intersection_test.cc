@@ -1,12 +1,12 @@
 // A ray that starts on a surface must not meet it again, and must start no farther off it than it has to. A fixed epsilon
 // can be right for one size of scene only, and floats for one place.
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 
 #include "core/render.h"
 #include "core/scene.h"
 #include "tests/kernel_harness.h"
+#include "tests/scene_paths.h"
 #include "tests/scenes_harness.h"
 #include "tests/stability/curve.h"
 #include "tests/stability/fixed_epsilon.h"
@@ -19,11 +19,6 @@ constexpr int kScales = 9, kDistances = 7;
 #else
 constexpr int kScales = 3, kDistances = 2;
 #endif
-
-std::string source_dir() {
-  const char* folder = std::getenv("LANEWISE_SOURCE_DIR");
-  return folder ? folder : ".";
-}
 
 // A scene file with a COLLADA transform around all of it, camera and light too.
 Scene placed(const std::string& path, const std::string& transform) {
@@ -109,7 +104,7 @@ TEST_CASE("stability: a scene's picture does not know its scale") {
                     .ours = "rays start each surface's error bound off it",
                     .x_axis = "scale of a room of 2.8 units",
                     .y_axis = "share of pixels changed"};
-  const std::string room = source_dir() + "/scenes/cornell_spheres.dae";
+  const std::string room = test::shipped_scene("cornell_spheres.dae");
   std::vector<Plan> plans, naive;
   for (const double factor : test::log_spaced(1e-4, 1e4, kScales)) {
     plans.push_back(make_plan(placed(room, scale(factor)), small()));
@@ -139,7 +134,7 @@ TEST_CASE("stability: a scene's picture does not know its place") {
                     .ours = "float coordinates from the scene's centre",
                     .x_axis = "distance of a room of 2.8 units from the origin (units)",
                     .y_axis = "share of pixels changed"};
-  const std::string room = source_dir() + "/scenes/cornell_spheres.dae";
+  const std::string room = test::shipped_scene("cornell_spheres.dae");
   std::vector<Plan> plans, naive;
   for (const double distance : test::log_spaced(10, 1e7, kDistances)) {
     const Scene scene = placed(room, move(distance));
@@ -153,8 +148,11 @@ TEST_CASE("stability: a scene's picture does not know its place") {
 }
 
 TEST_CASE("stability: nor do pictures with a mesh, where the course's scenes are at hand") {
-  const std::string bunny = source_dir() + "/../shared/scenes/CBbunny_microfacet_cu.dae";
-  if (!std::filesystem::exists(bunny)) return;
+  const std::string bunny = test::course_scenes() / "CBbunny_microfacet_cu.dae";
+  if (!std::filesystem::exists(bunny)) {
+    MESSAGE("skipped: no " << bunny);
+    return;
+  }
   Settings settings = small();
   settings.threads = 0;
   const Image want = render(make_plan(placed(bunny, ""), settings)).image;
