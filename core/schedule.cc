@@ -14,7 +14,7 @@ namespace {
 Exposure expose_tiles(const Settings& settings, uint32_t threads, const Draw& draw,
                       const std::function<void(const Progress&)>& progress) {
   const Window window = settings.window();
-  std::vector<Tile> tiles = make_tiles(settings, window);
+  std::vector<Tile> tiles = make_tiles(settings);
   Film film(size_t{settings.width} * settings.height);
   const bool adaptive = settings.adaptive_batch > 0;
   const uint32_t batch = adaptive ? settings.adaptive_batch : settings.spp;

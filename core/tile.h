@@ -15,10 +15,11 @@ struct Tile {
 
 // Cuts the window into squares of a side that gives a tile's samples a full wave, if the picture is large enough for that to
 // leave every thread work to the end.
-inline std::vector<Tile> make_tiles(const Settings& settings, const Window& window) {
+inline std::vector<Tile> make_tiles(const Settings& settings) {
   constexpr uint32_t kMinSide = 16, kMaxSide = 64;
   uint32_t side = kMinSide;
   while (side < kMaxSide && uint64_t{side} * side * settings.spp < settings.wave) side *= 2;
+  const Window window = settings.window();
   const uint32_t x_end = window.x + window.width, y_end = window.y + window.height;
   std::vector<Tile> tiles;
   for (uint32_t y0 = window.y; y0 < y_end; y0 += side) {

@@ -77,15 +77,6 @@ std::vector<Path<float>> trace(const Plan& plan, const std::vector<Ray>& rays) {
   return result;
 }
 
-glm::vec3 random_direction(std::mt19937& rng) {
-  std::normal_distribution<float> normal;
-  glm::vec3 v;
-  do {
-    v = {normal(rng), normal(rng), normal(rng)};
-  } while (glm::length(v) < 1e-3f);
-  return glm::normalize(v);
-}
-
 glm::vec3 random_point(std::mt19937& rng, float half_side) {
   std::uniform_real_distribution<float> side(-half_side, half_side);
   const float x = side(rng), y = side(rng), z = side(rng);

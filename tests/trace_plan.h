@@ -8,6 +8,7 @@
 
 #include "core/path_buffer.h"
 #include "core/plan.h"
+#include "core/verify/random_path.h"
 
 namespace lanewise::test {
 
@@ -32,7 +33,6 @@ PathBuffer paths_along(const std::vector<Ray>& rays);
 // Runs intersect on the rays with the target chosen at the moment.
 std::vector<Path<float>> trace(const Plan& plan, const std::vector<Ray>& rays);
 
-glm::vec3 random_direction(std::mt19937& rng);
 glm::vec3 random_point(std::mt19937& rng, float half_side);
 std::vector<Triangle> random_triangles(std::mt19937& rng, size_t n, float half_side, float size);
 

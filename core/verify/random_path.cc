@@ -7,9 +7,8 @@
 #include "kernels/reference/vec3.h"
 
 namespace lanewise::test {
-namespace {
 
-glm::vec3 random_unit(std::mt19937& rng) {
+glm::vec3 random_direction(std::mt19937& rng) {
   std::normal_distribution<float> normal;
   glm::vec3 v;
   do {
@@ -18,15 +17,13 @@ glm::vec3 random_unit(std::mt19937& rng) {
   return glm::normalize(v);
 }
 
-}  // namespace
-
 void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t index) {
   std::uniform_real_distribution<float> unit(0.0f, 1.0f), sides(-1.0f, 1.0f);
   p.pixel = static_cast<uint32_t>(rng() % (plan.settings.width * plan.settings.height));
   p.sample = static_cast<uint32_t>(rng());
   p.slot = index;
   LANEWISE_SET_VEC3(p, o, 0.9f * glm::vec3(sides(rng), sides(rng), sides(rng)));
-  const glm::vec3 d = random_unit(rng), n = random_unit(rng);
+  const glm::vec3 d = random_direction(rng), n = random_direction(rng);
   LANEWISE_SET_VEC3(p, d, d);
   LANEWISE_SET_RGB(p, beta, glm::vec3(unit(rng), unit(rng), unit(rng)) + 0.01f);
   LANEWISE_SET_RGB(p, L, glm::vec3(unit(rng), unit(rng), unit(rng)));
@@ -37,9 +34,9 @@ void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t i
   p.v = unit(rng) * (1 - p.u);
   p.bin = plan.prim_bin[p.prim];
   LANEWISE_SET_VEC3(p, n, n);
-  LANEWISE_SET_VEC3(p, s, glm::normalize(n + 0.1f * random_unit(rng)));
+  LANEWISE_SET_VEC3(p, s, glm::normalize(n + 0.1f * random_direction(rng)));
   p.err = 1e-6f;
-  LANEWISE_SET_VEC3(p, l, (0.1f + unit(rng)) * random_unit(rng));
+  LANEWISE_SET_VEC3(p, l, (0.1f + unit(rng)) * random_direction(rng));
   p.l_pdf = rng() % 8 == 0 ? 0.0f : 0.01f + 2 * unit(rng);
   LANEWISE_SET_RGB(p, c, glm::vec3(unit(rng), unit(rng), unit(rng)));
 }

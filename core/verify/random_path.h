@@ -1,12 +1,16 @@
 // Random content for paths, for tests and benchmarks of kernels.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <random>
 
 #include "core/path_state.h"
 #include "core/plan.h"
 
 namespace lanewise::test {
+
+// A unit vector, every direction as likely.
+glm::vec3 random_direction(std::mt19937& rng);
 
 // Random but plausible content for every field: unit directions and normals with s near n, positive throughput, prims
 // of the plan, distinct pixels, samples and slots.

@@ -30,13 +30,13 @@ HWY_AFTER_NAMESPACE();
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
+#include "tests/statistics/significance.h"
 
 namespace lanewise {
 namespace {
@@ -72,19 +72,14 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 // The p-value of "(a[i], b[i]) are uniform in the unit square" by 16 x 16 cells.
-double chi_square_p(const std::vector<float>& a, const std::vector<float>& b) {
+double uniform_p(const std::vector<float>& a, const std::vector<float>& b) {
   constexpr int kSide = 16;
-  double count[kSide * kSide] = {};
-  for (size_t i = 0; i < a.size(); ++i)
-    ++count[static_cast<int>(a[i] * kSide) * kSide + static_cast<int>(b[i] * kSide)];
-  const double expected = static_cast<double>(a.size()) / (kSide * kSide);
-  double statistic = 0;
-  for (const double c : count) statistic += (c - expected) * (c - expected) / expected;
-  return boost::math::cdf(complement(boost::math::chi_squared(kSide * kSide - 1), statistic));
+  std::vector<double> counts(kSide * kSide), expected(kSide * kSide, static_cast<double>(a.size()) / (kSide * kSide));
+  for (size_t i = 0; i < a.size(); ++i) {
+    ++counts[static_cast<size_t>(static_cast<int>(a[i] * kSide) * kSide + static_cast<int>(b[i] * kSide))];
+  }
+  return test::chi_square_p(counts, expected);
 }
-
-// The level at which each of so many tests must pass for all to pass with 99%.
-double sidak(size_t tests) { return -std::expm1(std::log1p(-0.01) / static_cast<double>(tests)); }
 
 // Sample i of a van der Corput sequence, scrambled as Owen does, by Laine & Karras's hash with Burley's constants.
 double owen_scrambled(uint32_t i, uint32_t seed) {
@@ -167,11 +162,11 @@ TEST_SUITE("stability") {
       others.push_back({.name = "bounce", .set = random_set(bounce, kSetBsdf)});
     }
     const size_t tests = 2 * (16 * others.size() + 6);
-    const double level = sidak(tests);
+    const double level = test::sidak(0.01, tests);
     const double bound = quantile(complement(boost::math::normal(), level / 2)) / std::sqrt(double(kSamples));
     double worst_correlation = 0, worst_p = 1;
     const auto check = [&](const std::vector<float>& a, const std::vector<float>& b) {
-      const double r = std::abs(correlation(a, b)), p = chi_square_p(a, b);
+      const double r = std::abs(correlation(a, b)), p = uniform_p(a, b);
       CHECK(r < bound);
       CHECK(p > level);
       worst_correlation = std::max(worst_correlation, r);
