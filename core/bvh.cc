@@ -12,7 +12,6 @@ namespace lanewise {
 namespace {
 
 constexpr uint32_t kBins = 16;
-constexpr uint32_t kMaxLeafPrims = 2 * kLeafWidth;
 // Of a binary split, in units of the test of one block. Three levels of the binary tree become one of the wide tree.
 constexpr float kSplitCost = 0.5f;
 // Subtrees below this size are built by the thread that reaches them.
@@ -85,6 +84,46 @@ struct BinMap {
   }
 };
 
+// Where a node's children go, see BvhNode: of all assignments the one whose children lie farthest, summed, towards the
+// corners that their slots stand for. Boxes beyond those given fill the slots left.
+std::array<uint8_t, kBvhWidth> assign_slots(std::span<const Bounds4> boxes) {
+  constexpr uint32_t kSets = 1 << kBvhWidth;
+  // Small enough that nothing below overflows.
+  constexpr float kScale = 0x1p-6f;
+  float mean[3] = {};
+  const auto center = [](const Bounds4& box, int a) { return kScale * box.lo[a] + kScale * box.hi[a]; };
+  for (int a = 0; a < 3; ++a) {
+    for (const Bounds4& box : boxes) mean[a] += center(box, a) / static_cast<float>(boxes.size());
+  }
+  // Of the first i boxes in the i slots of a set: the best sum, and the slot of the last.
+  float best[kSets];
+  uint8_t last[kSets] = {};
+  std::fill_n(best, kSets, -kInf);
+  best[0] = 0;
+  for (uint32_t set = 0; set < kSets; ++set) {
+    const size_t i = static_cast<size_t>(std::popcount(set));
+    if (i >= kBvhWidth) break;
+    for (uint8_t slot = 0; slot < kBvhWidth; ++slot) {
+      if (set >> slot & 1) continue;
+      float sum = best[set];
+      for (int a = 0; a < 3 && i < boxes.size(); ++a) {
+        const float offset = center(boxes[i], a) - mean[a];
+        sum += slot >> a & 1 ? offset : -offset;
+      }
+      const uint32_t next = set | 1u << slot;
+      if (sum > best[next]) {
+        best[next] = sum;
+        last[next] = slot;
+      }
+    }
+  }
+  std::array<uint8_t, kBvhWidth> slots;
+  for (uint32_t set = kSets - 1; set != 0; set &= ~(1u << last[set])) {
+    slots[static_cast<size_t>(std::popcount(set)) - 1] = last[set];
+  }
+  return slots;
+}
+
 class Builder {
  public:
   Builder(std::span<const Box> boxes, uint32_t max_depth)
@@ -126,7 +165,7 @@ class Builder {
     const bool halve = depth + ceil_log2(count) >= max_depth_;
     const Split split = halve ? Split{} : best_split(first, count, map);
     const float area = node.box.area();
-    if (count <= kMaxLeafPrims && !(split.cost + kSplitCost * area < blocks_of(count) * area)) return;
+    if (count <= kLeafWidth && !(split.cost + kSplitCost * area < blocks_of(count) * area)) return;
 
     const uint32_t middle = split.axis < 0 ? halve_range(first, count, centroids) : partition(first, count, map, split);
     const uint32_t left = index + 1, left_count = middle - first;
@@ -223,29 +262,30 @@ class Builder {
     bvh.depth = std::max(bvh.depth, depth);
     const uint32_t index = static_cast<uint32_t>(bvh.nodes.size());
     bvh.nodes.emplace_back();
+    Bounds4 boxes[kBvhWidth];
+    for (uint32_t i = 0; i < n; ++i) boxes[i] = nodes_[children[i]].box;
+    const std::array<uint8_t, kBvhWidth> slots = assign_slots(std::span(boxes, n));
     for (uint32_t i = 0; i < kBvhWidth; ++i) {
-      const Bounds4 box = i < n ? nodes_[children[i]].box : Bounds4();
       for (int a = 0; a < 3; ++a) {
-        bvh.nodes[index].lo[a][i] = box.lo[a];
-        bvh.nodes[index].hi[a][i] = box.hi[a];
+        bvh.nodes[index].lo[a][slots[i]] = boxes[i].lo[a];
+        bvh.nodes[index].hi[a][slots[i]] = boxes[i].hi[a];
       }
-      bvh.nodes[index].child[i] = 0;
+      bvh.nodes[index].child[slots[i]] = 0;
     }
     for (uint32_t i = 0; i < n; ++i) {
       const BinaryNode& child = nodes_[children[i]];
       const uint32_t reference = child.right == 0 ? add_leaf(child, bvh) : collapse(children[i], depth + 1, bvh);
-      bvh.nodes[index].child[i] = reference;
+      bvh.nodes[index].child[slots[i]] = reference;
     }
     return index;
   }
 
   uint32_t add_leaf(const BinaryNode& leaf, Bvh& bvh) const {
-    const uint32_t first = static_cast<uint32_t>(bvh.leaf_prims.size()) / kLeafWidth;
-    const uint32_t blocks = (leaf.count + kLeafWidth - 1) / kLeafWidth;
-    for (uint32_t i = 0; i < blocks * kLeafWidth; ++i) {
+    const uint32_t block = static_cast<uint32_t>(bvh.leaf_prims.size()) / kLeafWidth;
+    for (uint32_t i = 0; i < kLeafWidth; ++i) {
       bvh.leaf_prims.push_back(i < leaf.count ? refs_[leaf.first + i].prim : kNoPrim);
     }
-    return kLeafBit | first << 3 | (blocks - 1);
+    return kLeafBit | block;
   }
 
   std::vector<Ref> refs_;

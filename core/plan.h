@@ -102,11 +102,11 @@ struct FlatQuad {
 };
 
 // kLeafWidth triangles or spheres side by side, tested by one ray. Short blocks hold prim kNoPrim and zeros.
-struct alignas(16) TriangleBlock {
+struct alignas(64) TriangleBlock {
   float v[3][3][kLeafWidth];  // vertex, axis, lane
   uint32_t prim[kLeafWidth];
 };
-struct alignas(16) SphereBlock {
+struct alignas(32) SphereBlock {
   float center[3][kLeafWidth];
   float radius[kLeafWidth];
   uint32_t prim[kLeafWidth];

@@ -110,32 +110,30 @@ inline HWY_NOINLINE void WalkTriangles(const Plan& plan, const SlabRays& slabs, 
   const DLeaf d;
   const hn::RebindToSigned<DLeaf> di;
   const TriangleLeaf triangles(plan, rays, lane);
-  const auto leaf = [&](size_t first, size_t blocks) HWY_ATTR __attribute__((always_inline)) {
-    for (size_t b = first; b < first + blocks; ++b) {
-      const TriangleBlock& block = triangles.Block(b);
-      for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-        const TriangleTest<DLeaf> test = triangles.Test(block, i);
-        const VLeaf t = hn::Div(test.depth, test.det);
-        const auto prim = hn::Load(di, TriangleLeaf::Prims(block) + i);
-        const auto hit = hn::And(hn::And(test.inside, TriangleLeaf::Used(block, i)),
-                                 hn::And(hn::Gt(t, hn::Zero(d)),
-                                         Before(d, t, prim, hn::Set(d, best.t[lane]), hn::Set(di, best.prim[lane]))));
-        if (hn::AllFalse(d, hit)) continue;
-        HWY_ALIGN float ts[kLeafWidth], vs[kLeafWidth], ws[kLeafWidth], dets[kLeafWidth];
-        hn::Store(t, d, ts);
-        hn::Store(test.weight[1], d, vs);
-        hn::Store(test.weight[2], d, ws);
-        hn::Store(test.det, d, dets);
-        for (uint32_t hits = MaskBits(d, hit); hits != 0; hits &= hits - 1) {
-          const size_t k = static_cast<size_t>(std::countr_zero(hits));
-          const int32_t p = static_cast<int32_t>(block.prim[i + k]);
-          if (ts[k] > best.t[lane] || (ts[k] == best.t[lane] && p > best.prim[lane])) continue;
-          best.t[lane] = ts[k];
-          best.v[lane] = vs[k];
-          best.w[lane] = ws[k];
-          best.det[lane] = dets[k];
-          best.prim[lane] = p;
-        }
+  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
+    const TriangleBlock& block = triangles.Block(b);
+    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+      const TriangleTest<DLeaf> test = triangles.Test(block, i);
+      const VLeaf t = hn::Div(test.depth, test.det);
+      const auto prim = hn::Load(di, TriangleLeaf::Prims(block) + i);
+      const auto hit = hn::And(
+          hn::And(test.inside, TriangleLeaf::Used(block, i)),
+          hn::And(hn::Gt(t, hn::Zero(d)), Before(d, t, prim, hn::Set(d, best.t[lane]), hn::Set(di, best.prim[lane]))));
+      if (hn::AllFalse(d, hit)) continue;
+      HWY_ALIGN float ts[kLeafWidth], vs[kLeafWidth], ws[kLeafWidth], dets[kLeafWidth];
+      hn::Store(t, d, ts);
+      hn::Store(test.weight[1], d, vs);
+      hn::Store(test.weight[2], d, ws);
+      hn::Store(test.det, d, dets);
+      for (uint32_t hits = MaskBits(d, hit); hits != 0; hits &= hits - 1) {
+        const size_t k = static_cast<size_t>(std::countr_zero(hits));
+        const int32_t p = static_cast<int32_t>(block.prim[i + k]);
+        if (ts[k] > best.t[lane] || (ts[k] == best.t[lane] && p > best.prim[lane])) continue;
+        best.t[lane] = ts[k];
+        best.v[lane] = vs[k];
+        best.w[lane] = ws[k];
+        best.det[lane] = dets[k];
+        best.prim[lane] = p;
       }
     }
   };
@@ -146,20 +144,18 @@ inline HWY_NOINLINE void WalkSpheres(const Plan& plan, const SlabRays& slabs, co
                                      NearestLanes& best) {
   const DLeaf d;
   const SphereLeaf spheres(plan, rays, lane);
-  const auto leaf = [&](size_t first, size_t blocks) HWY_ATTR __attribute__((always_inline)) {
-    for (size_t b = first; b < first + blocks; ++b) {
-      const SphereBlock& block = spheres.Block(b);
-      for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-        HWY_ALIGN float ts[kLeafWidth];
-        hn::Store(spheres.Test(block, i), d, ts);
-        for (size_t k = 0; k < hn::Lanes(d); ++k) {
-          const int32_t p = static_cast<int32_t>(block.prim[i + k]);
-          if (!(ts[k] < best.t[lane] || (ts[k] == best.t[lane] && p < best.prim[lane]))) continue;
-          best.t[lane] = ts[k];
-          best.v[lane] = best.w[lane] = 0;
-          best.det[lane] = 1;
-          best.prim[lane] = p;
-        }
+  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
+    const SphereBlock& block = spheres.Block(b);
+    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+      HWY_ALIGN float ts[kLeafWidth];
+      hn::Store(spheres.Test(block, i), d, ts);
+      for (size_t k = 0; k < hn::Lanes(d); ++k) {
+        const int32_t p = static_cast<int32_t>(block.prim[i + k]);
+        if (!(ts[k] < best.t[lane] || (ts[k] == best.t[lane] && p < best.prim[lane]))) continue;
+        best.t[lane] = ts[k];
+        best.v[lane] = best.w[lane] = 0;
+        best.det[lane] = 1;
+        best.prim[lane] = p;
       }
     }
   };

@@ -27,15 +27,13 @@ HWY_INLINE hn::Mask<D> WithinSegment(D d, V depth, V det) {
 HWY_NOINLINE bool WalkTrianglesAny(const Plan& plan, const SlabRays& slabs, const RayLanes& rays, size_t lane) {
   const DLeaf d;
   const TriangleLeaf triangles(plan, rays, lane);
-  const auto leaf = [&](size_t first, size_t blocks) HWY_ATTR __attribute__((always_inline)) {
-    for (size_t b = first; b < first + blocks; ++b) {
-      const TriangleBlock& block = triangles.Block(b);
-      for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-        const TriangleTest<DLeaf> test = triangles.Test(block, i);
-        const auto hit =
-            hn::And(hn::And(test.inside, TriangleLeaf::Used(block, i)), WithinSegment(d, test.depth, test.det));
-        if (!hn::AllFalse(d, hit)) return true;
-      }
+  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
+    const TriangleBlock& block = triangles.Block(b);
+    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+      const TriangleTest<DLeaf> test = triangles.Test(block, i);
+      const auto hit =
+          hn::And(hn::And(test.inside, TriangleLeaf::Used(block, i)), WithinSegment(d, test.depth, test.det));
+      if (!hn::AllFalse(d, hit)) return true;
     }
     return false;
   };
@@ -45,12 +43,10 @@ HWY_NOINLINE bool WalkTrianglesAny(const Plan& plan, const SlabRays& slabs, cons
 HWY_NOINLINE bool WalkSpheresAny(const Plan& plan, const SlabRays& slabs, const RayLanes& rays, size_t lane) {
   const DLeaf d;
   const SphereLeaf spheres(plan, rays, lane);
-  const auto leaf = [&](size_t first, size_t blocks) HWY_ATTR __attribute__((always_inline)) {
-    for (size_t b = first; b < first + blocks; ++b) {
-      const SphereBlock& block = spheres.Block(b);
-      for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-        if (!hn::AllFalse(d, hn::Lt(spheres.Test(block, i), hn::Set(d, 1.0f)))) return true;
-      }
+  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
+    const SphereBlock& block = spheres.Block(b);
+    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+      if (!hn::AllFalse(d, hn::Lt(spheres.Test(block, i), hn::Set(d, 1.0f)))) return true;
     }
     return false;
   };

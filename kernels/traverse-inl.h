@@ -120,8 +120,7 @@ class NodeTest {
   size_t near_row_[3], far_row_[3];
 };
 
-// Visits, nearest first, the leaves that the ray may meet at a distance of t_max or less; leaf(first block, blocks) may
-// lower t_max.
+// Visits, nearest first, the leaves that the ray may meet at a distance of t_max or less; leaf(block) may lower t_max.
 template <class Leaf>
 HWY_INLINE void WalkNearestFirst(const Bvh& bvh, const SlabRays& rays, size_t lane, const float& t_max, Leaf& leaf) {
   struct Waiting {
@@ -134,7 +133,7 @@ HWY_INLINE void WalkNearestFirst(const Bvh& bvh, const SlabRays& rays, size_t la
   uint32_t child = 0;
   for (;;) {
     if (child & kLeafBit) {
-      leaf(leaf_first_block(child), leaf_blocks(child));
+      leaf(leaf_block(child));
     } else {
       const BvhNode& node = bvh.nodes[child];
       HWY_ALIGN float entry[kBvhWidth];
@@ -166,8 +165,8 @@ HWY_INLINE void WalkNearestFirst(const Bvh& bvh, const SlabRays& rays, size_t la
   }
 }
 
-// Visits the leaves that the ray may meet within t_max, in no order, until leaf(first block, blocks) returns true.
-// Returns whether one did.
+// Visits the leaves that the ray may meet within t_max, in no order, until leaf(block) returns true. Returns whether one
+// did.
 template <class Leaf>
 HWY_INLINE bool WalkUntil(const Bvh& bvh, const SlabRays& rays, size_t lane, float t_max, Leaf& leaf) {
   const NodeTest test(rays, lane);
@@ -176,7 +175,7 @@ HWY_INLINE bool WalkUntil(const Bvh& bvh, const SlabRays& rays, size_t lane, flo
   uint32_t child = 0;
   for (;;) {
     if (child & kLeafBit) {
-      if (leaf(leaf_first_block(child), leaf_blocks(child))) return true;
+      if (leaf(leaf_block(child))) return true;
     } else {
       const BvhNode& node = bvh.nodes[child];
       HWY_ALIGN float entry[kBvhWidth];

@@ -48,12 +48,7 @@ class SlabRay {
 template <class T, class Leaf>
 bool walk(const Bvh& bvh, const SlabRay<T>& ray, const T& t_max, const Leaf& leaf, uint32_t child = 0) {
   if (bvh.nodes.empty()) return false;
-  if (child & kLeafBit) {
-    for (uint32_t b = 0; b < leaf_blocks(child); ++b) {
-      if (leaf(leaf_first_block(child) + b)) return true;
-    }
-    return false;
-  }
+  if (child & kLeafBit) return leaf(leaf_block(child));
   struct Entered {
     T entry;
     uint32_t child;
