@@ -118,6 +118,7 @@ class Planner {
       return scene_.meshes[a].triangles.size() < scene_.meshes[b].triangles.size();
     });
     is_flat_mesh_.assign(scene_.meshes.size(), false);
+    if (plan_.settings.accel == Accel::kTree) return;
     size_t flat = 0;
     for (const size_t i : by_size) {
       const size_t n = scene_.meshes[i].triangles.size();
@@ -212,7 +213,7 @@ class Planner {
         " parallelograms (" + std::to_string(plan_.blocking_quads) + " of them can block light), " +
         std::to_string(plan_.flat_triangles.size()) + " triangles (" + std::to_string(plan_.blocking_triangles) + ")");
     say(std::to_string(tree_triangles_.size()) + " triangles in an 8-wide tree");
-    const bool few = spheres_.size() <= kMaxFlatSpheres;
+    const bool few = spheres_.size() <= kMaxFlatSpheres && plan_.settings.accel == Accel::kPlan;
     if (few) {
       plan_.flat_spheres = spheres_;
     } else {

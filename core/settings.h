@@ -9,6 +9,7 @@ namespace lanewise {
 enum class View { kFile, kFit };  // the file's camera, or the course program's framing of the whole scene
 enum class Direct { kMis, kLight, kBsdf, kHemisphere };  // how direct light is estimated (kHemisphere: -H)
 enum class BsdfSampling { kVndf, kNdf, kCosine };        // how microfacets choose a direction
+enum class Accel { kPlan, kTree };  // where rays look for geometry: as the plan chooses; all in trees
 enum class Fresnel { kExact, kSchlick, kCourse };
 
 // A rectangle of pixels of the whole picture; row 0 is at the top.
@@ -26,6 +27,7 @@ struct Settings {
   uint32_t threads = 0;        // 0: all the machine has
   uint32_t wave = 4096;        // paths in flight per thread, a multiple of kLanes
   uint64_t seed = 0;
+  Accel accel = Accel::kPlan;
   View view = View::kFile;
   double lens_radius = 0;     // -b: of a thin lens, in scene units; 0: a pinhole
   double focal_distance = 1;  // -d: along the view axis, of the plane that the lens shows sharp, > 0
