@@ -101,12 +101,12 @@ struct FlatQuad {
   uint32_t prim;  // the first of its two triangles; the second's index is not used
 };
 
-// kLeafWidth triangles or spheres side by side, tested by one ray. Short blocks hold prim kNoPrim and zeros.
+// kLeafWidth triangles or spheres side by side, tested by one ray. Short blocks repeat their first.
 struct alignas(64) TriangleBlock {
   float v[3][3][kLeafWidth];  // vertex, axis, lane
   uint32_t prim[kLeafWidth];
 };
-struct alignas(32) SphereBlock {
+struct alignas(64) SphereBlock {
   float center[3][kLeafWidth];
   float radius[kLeafWidth];
   uint32_t prim[kLeafWidth];

@@ -45,9 +45,11 @@ void plant(std::span<const Primitive> primitives, Bvh& tree, AlignedVector<Block
   for (size_t i = 0; i < tree.leaf_prims.size(); ++i) {
     Block& block = blocks[i / kLeafWidth];
     const size_t lane = i % kLeafWidth;
-    const uint32_t index = tree.leaf_prims[i];
-    block.prim[lane] = index == kNoPrim ? kNoPrim : primitives[index].prim;
-    if (index != kNoPrim) pack(primitives[index], block, lane);
+    // Short blocks repeat their first primitive.
+    uint32_t index = tree.leaf_prims[i];
+    if (index == kNoPrim) index = tree.leaf_prims[i - lane];
+    block.prim[lane] = primitives[index].prim;
+    pack(primitives[index], block, lane);
   }
 }
 

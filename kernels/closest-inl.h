@@ -9,21 +9,16 @@
 #endif
 
 #include "core/plan.h"
+#include "kernels/flight-inl.h"
 #include "kernels/leaf-inl.h"
 #include "kernels/quad-inl.h"
 #include "kernels/simd-inl.h"
 #include "kernels/sphere-inl.h"
-#include "kernels/traverse-inl.h"
 #include "kernels/triangle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lanewise {
 namespace HWY_NAMESPACE {
-
-struct Hits {
-  VF t, u, v;  // +inf, 0 and 0 for none
-  VI prim;     // kNoHit for none
-};
 
 // Nearest so far; u = v / det and v = w / det wait until the end for their divisions.
 struct Nearest {
@@ -37,25 +32,6 @@ struct Nearest {
     w = hn::IfThenZeroElse(nearer, w);
     det = hn::IfThenElse(nearer, Splat(1.0f), det);
     prim = hn::IfThenElse(hn::RebindMask(DI(), nearer), hit_prim, prim);
-  }
-};
-
-// The same in memory, for rays that walk a tree one by one.
-struct NearestLanes {
-  HWY_ALIGN float t[kLanes], v[kLanes], w[kLanes], det[kLanes];
-  HWY_ALIGN int32_t prim[kLanes];
-
-  HWY_INLINE void Store(const Nearest& best) {
-    const DF d;
-    hn::Store(best.t, d, t);
-    hn::Store(best.v, d, v);
-    hn::Store(best.w, d, w);
-    hn::Store(best.det, d, det);
-    hn::Store(best.prim, DI(), prim);
-  }
-  HWY_INLINE Nearest Load() const {
-    const DF d;
-    return {hn::Load(d, t), hn::Load(d, v), hn::Load(d, w), hn::Load(d, det), hn::Load(DI(), prim)};
   }
 };
 
@@ -105,98 +81,129 @@ HWY_INLINE void NearestFlatSphere(const Plan& plan, const Vec3& o, const Vec3& d
   }
 }
 
-inline HWY_NOINLINE void WalkTriangles(const Plan& plan, const SlabRays& slabs, const RayLanes& rays, size_t lane,
-                                       NearestLanes& best) {
-  const DLeaf d;
-  const hn::RebindToSigned<DLeaf> di;
-  const TriangleLeaf triangles(plan, rays, lane);
-  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
-    const TriangleBlock& block = triangles.Block(b);
-    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-      const TriangleTest<DLeaf> test = triangles.Test(block, i);
-      const VLeaf t = hn::Div(test.depth, test.det);
-      const auto prim = hn::Load(di, TriangleLeaf::Prims(block) + i);
-      const auto hit = hn::And(
-          hn::And(test.inside, TriangleLeaf::Used(block, i)),
-          hn::And(hn::Gt(t, hn::Zero(d)), Before(d, t, prim, hn::Set(d, best.t[lane]), hn::Set(di, best.prim[lane]))));
-      if (hn::AllFalse(d, hit)) continue;
-      HWY_ALIGN float ts[kLeafWidth], vs[kLeafWidth], ws[kLeafWidth], dets[kLeafWidth];
-      hn::Store(t, d, ts);
-      hn::Store(test.weight[1], d, vs);
-      hn::Store(test.weight[2], d, ws);
-      hn::Store(test.det, d, dets);
-      for (uint32_t hits = MaskBits(d, hit); hits != 0; hits &= hits - 1) {
-        const size_t k = static_cast<size_t>(std::countr_zero(hits));
-        const int32_t p = static_cast<int32_t>(block.prim[i + k]);
-        if (ts[k] > best.t[lane] || (ts[k] == best.t[lane] && p > best.prim[lane])) continue;
-        best.t[lane] = ts[k];
-        best.v[lane] = vs[k];
-        best.w[lane] = ws[k];
-        best.det[lane] = dets[k];
-        best.prim[lane] = p;
-      }
+// Where the hits of rays go. t is how far a ray goes, and prim what it has met there.
+struct HitArrays {
+  float *t, *u, *v;
+  uint32_t* prim;
+
+  // Whether the hit is nearer than what the ray has met, or as near with a lower index, and now in its place.
+  HWY_INLINE bool Take(uint32_t ray, float hit_t, uint32_t hit_prim) const {
+    const bool lower = static_cast<int32_t>(hit_prim) < static_cast<int32_t>(prim[ray]);
+    if (!(hit_t < t[ray] || (hit_t == t[ray] && lower))) return false;
+    t[ray] = hit_t;
+    prim[ray] = hit_prim;
+    return true;
+  }
+};
+
+// What a Flight looks for: the nearest triangle.
+class NearestTriangle {
+ public:
+  using Block = TriangleBlock;
+  using Ray = TriangleRay;
+  using Test = BlockTest;
+  static constexpr bool kNearest = true;
+
+  NearestTriangle(const Plan& plan, const HitArrays& hits) : blocks_(plan.triangle_blocks.data()), hits_(hits) {}
+
+  const Block* Blocks() const { return blocks_; }
+  static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
+  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
+    return TestBlockQuickly(block, ray, t_max, test);
+  }
+  HWY_INLINE bool Visit(const Ray& ray, const Block& block, uint32_t hits, Test& test, NodeRay& node_ray) const {
+    const uint32_t index = node_ray.index;
+    bool nearer = false;
+    for (hits = MakeSure(block, ray, hits, test); hits != 0; hits &= hits - 1) {
+      const size_t k = static_cast<size_t>(std::countr_zero(hits));
+      const float t = test.depth[k] / test.det[k];
+      if (!(t > 0) || !hits_.Take(index, t, block.prim[k])) continue;
+      hits_.u[index] = test.v[k] / test.det[k];
+      hits_.v[index] = test.w[k] / test.det[k];
+      node_ray.t_max = t;
+      nearer = true;
     }
-  };
-  WalkNearestFirst(plan.triangle_tree, slabs, lane, best.t[lane], leaf);
+    return nearer;
+  }
+
+ private:
+  const Block* blocks_;
+  HitArrays hits_;
+};
+
+// The nearest sphere.
+class NearestSphere {
+ public:
+  using Block = SphereBlock;
+  using Ray = SphereRay;
+  using Test = SphereTest;
+  static constexpr bool kNearest = true;
+
+  NearestSphere(const Plan& plan, const HitArrays& hits) : blocks_(plan.sphere_blocks.data()), hits_(hits) {}
+
+  const Block* Blocks() const { return blocks_; }
+  static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
+  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
+    return TestBlock(block, ray, t_max, test);
+  }
+  HWY_INLINE bool Visit(const Ray& /*ray*/, const Block& block, uint32_t hits, const Test& test,
+                        NodeRay& node_ray) const {
+    const uint32_t index = node_ray.index;
+    bool nearer = false;
+    for (; hits != 0; hits &= hits - 1) {
+      const size_t k = static_cast<size_t>(std::countr_zero(hits));
+      if (!hits_.Take(index, test.t[k], block.prim[k])) continue;
+      hits_.u[index] = hits_.v[index] = 0;
+      node_ray.t_max = test.t[k];
+      nearer = true;
+    }
+    return nearer;
+  }
+
+ private:
+  const Block* blocks_;
+  HitArrays hits_;
+};
+
+constexpr size_t kClosestBatch = 1024;
+using ClosestList = RayList<kClosestBatch>;
+
+inline HWY_NOINLINE void WalkNearestTriangle(const Plan& plan, const ClosestList& rays, const HitArrays& hits) {
+  Flight<NearestTriangle>(plan.triangle_tree, NearestTriangle(plan, hits)).Walk(rays);
+}
+inline HWY_NOINLINE void WalkNearestSphere(const Plan& plan, const ClosestList& rays, const HitArrays& hits) {
+  Flight<NearestSphere>(plan.sphere_tree, NearestSphere(plan, hits)).Walk(rays);
 }
 
-inline HWY_NOINLINE void WalkSpheres(const Plan& plan, const SlabRays& slabs, const RayLanes& rays, size_t lane,
-                                     NearestLanes& best) {
-  const DLeaf d;
-  const SphereLeaf spheres(plan, rays, lane);
-  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
-    const SphereBlock& block = spheres.Block(b);
-    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-      HWY_ALIGN float ts[kLeafWidth];
-      hn::Store(spheres.Test(block, i), d, ts);
-      for (size_t k = 0; k < hn::Lanes(d); ++k) {
-        const int32_t p = static_cast<int32_t>(block.prim[i + k]);
-        if (!(ts[k] < best.t[lane] || (ts[k] == best.t[lane] && p < best.prim[lane]))) continue;
-        best.t[lane] = ts[k];
-        best.v[lane] = best.w[lane] = 0;
-        best.det[lane] = 1;
-        best.prim[lane] = p;
-      }
-    }
-  };
-  WalkNearestFirst(plan.sphere_tree, slabs, lane, best.t[lane], leaf);
-}
-
-// The trees, for the rays that meet their bounds nearer than the best hit so far.
-HWY_INLINE void NearestInTrees(const Plan& plan, const Vec3& o, const Vec3& dir, MF alive, Nearest& best) {
-  const DF d;
-  RayLanes rays;
-  rays.Store(o, dir, MakeShear(dir));
-  NearestLanes lanes;
-  lanes.Store(best);
-  SlabRays slabs;
-  const auto enter = [&](const Bvh& tree, auto walk) HWY_ATTR {
-    if (tree.nodes.empty()) return;
-    HWY_ALIGN float entering[kLanes];
-    const MF enters = hn::And(alive, EnterBounds(tree.bounds, o, dir, hn::Load(d, lanes.t), slabs));
-    hn::Store(hn::IfThenElseZero(enters, Splat(1.0f)), d, entering);
-    for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (entering[lane] != 0) walk(plan, slabs, rays, lane, lanes);
-    }
-  };
-  enter(plan.triangle_tree, WalkTriangles);
-  enter(plan.sphere_tree, WalkSpheres);
-  best = lanes.Load();
-}
-
-// Rays o + t dir, t > 0, dir of any length but 0. Lanes out of `alive` hit nothing.
-HWY_INLINE Hits ClosestHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF alive) {
+// Closest hits of rays begin .. end - 1, whole vectors of them: t = +inf, prim = kNoPrim and u = v = 0 for none.
+// ray(i, o, d) gives the vector of rays at i and returns which of its lanes are rays at all; the others hit nothing.
+template <class RayAt>
+HWY_INLINE void ClosestHits(const Plan& plan, const HitArrays& hits, size_t begin, size_t end, RayAt ray) {
   const DF d;
   const VF zero = hn::Zero(d);
-  // A dead lane's limit of 0 lets no hit pass.
-  Nearest best{hn::IfThenElseZero(alive, Splat(kInfinity)), zero, zero, Splat(1.0f), hn::Set(DI(), kNoHit)};
-  NearestFlatQuad(plan, o, dir, best);
-  NearestFlatTriangle(plan, o, dir, alive, best);
-  NearestFlatSphere(plan, o, dir, best);
-  if (!plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty()) NearestInTrees(plan, o, dir, alive, best);
-  const MF none = hn::RebindMask(d, hn::Eq(best.prim, hn::Set(DI(), kNoHit)));
-  return {hn::IfThenElse(none, Splat(kInfinity), best.t), hn::Div(best.v, best.det), hn::Div(best.w, best.det),
-          best.prim};
+  ClosestList triangle_rays, sphere_rays;
+  for (size_t batch = begin; batch < end; batch += kClosestBatch) {
+    for (size_t i = batch; i < std::min(end, batch + kClosestBatch); i += hn::Lanes(d)) {
+      Vec3 o, dir;
+      const MF alive = ray(i, o, dir);
+      // A dead lane's limit of 0 lets no hit pass.
+      Nearest best{hn::IfThenElseZero(alive, Splat(kInfinity)), zero, zero, Splat(1.0f), hn::Set(DI(), kNoHit)};
+      NearestFlatQuad(plan, o, dir, best);
+      NearestFlatTriangle(plan, o, dir, alive, best);
+      NearestFlatSphere(plan, o, dir, best);
+      triangle_rays.Add(plan.triangle_tree, i, o, dir, best.t, alive);
+      sphere_rays.Add(plan.sphere_tree, i, o, dir, best.t, alive);
+      const MF none = hn::RebindMask(d, hn::Eq(best.prim, hn::Set(DI(), kNoHit)));
+      hn::Store(hn::IfThenElse(none, Splat(kInfinity), best.t), d, hits.t + i);
+      hn::Store(hn::Div(best.v, best.det), d, hits.u + i);
+      hn::Store(hn::Div(best.w, best.det), d, hits.v + i);
+      hn::Store(hn::BitCast(DU(), best.prim), DU(), hits.prim + i);
+    }
+    if (triangle_rays.size() > 0) WalkNearestTriangle(plan, triangle_rays, hits);
+    if (sphere_rays.size() > 0) WalkNearestSphere(plan, sphere_rays, hits);
+    triangle_rays.clear();
+    sphere_rays.clear();
+  }
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -15,21 +15,20 @@ namespace HWY_NAMESPACE {
 void Intersect(const Plan& plan, const PathState& s, Range range) {
   const DF d;
   const DU du;
+  ClosestHits(plan, {s.t, s.u, s.v, s.prim}, range.begin, range.end, [&](size_t i, Vec3& o, Vec3& dir) HWY_ATTR {
+    o = LoadVec3(s.o_x, s.o_y, s.o_z, i);
+    dir = LoadVec3(s.d_x, s.d_y, s.d_z, i);
+    return hn::Gt(MaxElement(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i)), hn::Zero(d));
+  });
   const VU emitter = hn::Set(du, uint32_t{kEmitter}), finished = hn::Set(du, uint32_t{kFinished});
   const bool last = s.step.bounce >= plan.settings.max_depth;  // nothing scatters any more
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
-    const Vec3 o = LoadVec3(s.o_x, s.o_y, s.o_z, i), dir = LoadVec3(s.d_x, s.d_y, s.d_z, i);
-    const MF alive = hn::Gt(MaxElement(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i)), hn::Zero(d));
-    const Hits hits = ClosestHit(plan, o, dir, alive);
+    const VU prim = hn::Load(du, s.prim + i);
     // Missing rays look up primitive 0, and then do not use what they find.
-    const auto none = hn::Eq(hits.prim, hn::Set(DI(), kNoHit));
-    VU bin = hn::GatherIndex(du, plan.prim_bin.data(), hn::IfThenZeroElse(none, hits.prim));
+    const auto none = hn::Eq(prim, hn::Set(du, kNoPrim));
+    VU bin = hn::GatherIndex(du, plan.prim_bin.data(), hn::BitCast(DI(), hn::IfThenZeroElse(none, prim)));
     if (last) bin = hn::IfThenElse(hn::Eq(bin, emitter), emitter, finished);
-    hn::Store(hn::IfThenElse(hn::RebindMask(du, none), finished, bin), du, s.bin + i);
-    hn::Store(hn::BitCast(du, hits.prim), du, s.prim + i);
-    hn::Store(hits.t, d, s.t + i);
-    hn::Store(hits.u, d, s.u + i);
-    hn::Store(hits.v, d, s.v + i);
+    hn::Store(hn::IfThenElse(none, finished, bin), du, s.bin + i);
   }
 }
 

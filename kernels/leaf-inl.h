@@ -1,4 +1,4 @@
-// One ray against the blocks of a tree's leaves, a primitive in each lane.
+// One ray against the block of a tree's leaf, a primitive in each lane.
 #if defined(LANEWISE_KERNELS_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LANEWISE_KERNELS_LEAF_INL_H_
 #undef LANEWISE_KERNELS_LEAF_INL_H_
@@ -24,106 +24,135 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Primitives compare as signed integers: there are less than 2^31, and kNoPrim becomes -1, which beats none of them.
 constexpr int32_t kNoHit = static_cast<int32_t>(kNoPrim);
 
-// Rays in memory.
-struct RayLanes {
-  HWY_ALIGN float o[3][kLanes], d[3][kLanes];
-  // The shear's constants, and which axis comes in the place of x, of y and of z.
-  HWY_ALIGN float s_x[kLanes], s_y[kLanes], s_z[kLanes];
-  HWY_ALIGN int32_t major[kLanes];
-
-  HWY_INLINE void Store(const Vec3& origin, const Vec3& dir, const Shear& shear) {
-    const DF df;
-    StoreVec3(origin, o[0], o[1], o[2], 0);
-    StoreVec3(dir, d[0], d[1], d[2], 0);
-    hn::Store(shear.s_x, df, s_x);
-    hn::Store(shear.s_y, df, s_y);
-    hn::Store(shear.s_z, df, s_z);
-    const VF axis =
-        hn::IfThenElse(shear.x_major, hn::Zero(df), hn::IfThenElse(shear.y_major, Splat(1.0f), Splat(2.0f)));
-    hn::Store(hn::ConvertTo(DI(), axis), DI(), major);
-  }
+// A ray against triangles.
+struct alignas(32) TriangleRay {
+  float o[3];  // in the shear's order of axes
+  float s_x, s_y, s_z;
+  uint32_t axis[2];  // bytes from a vertex to its first and second coordinate in the shear's order
+  // The third's are what is left.
+  static constexpr uint32_t kAxisBytes = kLeafWidth * sizeof(float);
 };
 
-// One ray against the triangles of a block.
-class TriangleLeaf {
- public:
-  HWY_INLINE TriangleLeaf(const Plan& plan, const RayLanes& rays, size_t lane) : blocks_(plan.triangle_blocks.data()) {
-    const DLeaf d;
-    const int major = rays.major[lane];
-    axis_[0] = major == 0 ? 2 : 0;
-    axis_[1] = major == 1 ? 2 : 1;
-    axis_[2] = major;
-    HWY_UNROLL(3)
-    for (int k = 0; k < 3; ++k) o_[k] = hn::Set(d, rays.o[axis_[k]][lane]);
-    s_x_ = hn::Set(d, rays.s_x[lane]);
-    s_y_ = hn::Set(d, rays.s_y[lane]);
-    s_z_ = hn::Set(d, rays.s_z[lane]);
-  }
+using TriangleRays = Transposed<sizeof(TriangleRay) / 16>;
 
-  HWY_INLINE const TriangleBlock& Block(size_t block) const { return blocks_[block]; }
+HWY_INLINE TriangleRays MakeTriangleRays(const Rays& rays) {
+  const DU du;
+  const Shear shear = MakeShear(rays.d);
+  const Vec3& o = rays.o;
+  const auto x_major = hn::RebindMask(du, shear.x_major), y_major = hn::RebindMask(du, shear.y_major);
+  const VU x = hn::Zero(du), y = hn::Set(du, TriangleRay::kAxisBytes), z = hn::Set(du, 2 * TriangleRay::kAxisBytes);
+  TriangleRays out;
+  out.Set(0, hn::IfThenElse(shear.x_major, o.z, o.x), hn::IfThenElse(shear.y_major, o.z, o.y),
+          hn::IfThenElse(shear.x_major, o.x, hn::IfThenElse(shear.y_major, o.y, o.z)), shear.s_x);
+  out.Set(1, shear.s_y, shear.s_z, AsFloat(hn::IfThenElse(x_major, z, x)), AsFloat(hn::IfThenElse(y_major, z, y)));
+  return out;
+}
 
-  // Lanes i .. of the block.
-  HWY_INLINE TriangleTest<DLeaf> Test(const TriangleBlock& block, size_t i) const {
-    const DLeaf d;
-    VLeaf x[3], y[3], z[3];
+// Lanes i .. of a block, relative to a ray's origin.
+struct BlockVertices {
+  VLeaf x[3], y[3], z[3];
+
+  HWY_INLINE BlockVertices(const TriangleBlock& block, const TriangleRay& ray, size_t i) {
+    const char* base = reinterpret_cast<const char*>(&block);
+    const uint32_t last_axis = 3 * TriangleRay::kAxisBytes - ray.axis[0] - ray.axis[1];
     HWY_UNROLL(3)
-    for (int k = 0; k < 3; ++k) {
-      x[k] = hn::Sub(hn::Load(d, block.v[k][axis_[0]] + i), o_[0]);
-      y[k] = hn::Sub(hn::Load(d, block.v[k][axis_[1]] + i), o_[1]);
-      z[k] = hn::Sub(hn::Load(d, block.v[k][axis_[2]] + i), o_[2]);
+    for (size_t k = 0; k < 3; ++k, base += 3 * TriangleRay::kAxisBytes) {
+      x[k] = Coordinate(base + ray.axis[0], i, ray.o[0]);
+      y[k] = Coordinate(base + ray.axis[1], i, ray.o[1]);
+      z[k] = Coordinate(base + last_axis, i, ray.o[2]);
     }
-    return TestTriangle(d, Used(block, i), x, y, z, s_x_, s_y_, s_z_);
-  }
-
-  static HWY_INLINE hn::Mask<DLeaf> Used(const TriangleBlock& block, size_t i) {
-    const hn::RebindToSigned<DLeaf> di;
-    return hn::RebindMask(DLeaf(), hn::Gt(hn::Load(di, Prims(block) + i), hn::Set(di, kNoHit)));
-  }
-  static HWY_INLINE const int32_t* Prims(const TriangleBlock& block) {
-    return reinterpret_cast<const int32_t*>(block.prim);
   }
 
  private:
-  const TriangleBlock* blocks_;
-  int axis_[3];
-  VLeaf o_[3], s_x_, s_y_, s_z_;
+  static HWY_INLINE VLeaf Coordinate(const char* row, size_t i, float origin) {
+    const DLeaf d;
+    return hn::Sub(hn::Load(d, reinterpret_cast<const float*>(row) + i), hn::Set(d, origin));
+  }
 };
 
-// One ray against the spheres of a block: distances, +inf for misses and for unused lanes.
-class SphereLeaf {
- public:
-  HWY_INLINE SphereLeaf(const Plan& plan, const RayLanes& rays, size_t lane) : blocks_(plan.sphere_blocks.data()) {
+// What a block's triangles say to a ray, one a lane; see TriangleTest.
+struct BlockTest {
+  HWY_ALIGN float depth[kLeafWidth], det[kLeafWidth], v[kLeafWidth], w[kLeafWidth];
+
+  template <class Test>
+  HWY_INLINE void Store(const Test& test, size_t i) {
     const DLeaf d;
+    hn::Store(test.depth, d, depth + i);
+    hn::Store(test.det, d, det + i);
+    hn::Store(test.weight[1], d, v + i);
+    hn::Store(test.weight[2], d, w + i);
+  }
+};
+
+// Returns which triangles are hit within t_max, give or take some rounding, as bits; from bit kLeafWidth on, which are
+// doubtful.
+HWY_INLINE uint32_t TestBlockQuickly(const TriangleBlock& block, const TriangleRay& ray, float t_max, BlockTest& test) {
+  const DLeaf d;
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+    BlockVertices at(block, ray, i);
+    const QuickTest<DLeaf> quick =
+        TestQuickly(d, at.x, at.y, at.z, hn::Set(d, ray.s_x), hn::Set(d, ray.s_y), hn::Set(d, ray.s_z), t_max);
+    test.Store(quick, i);
+    bits |= MaskBits(d, quick.hit) << i | MaskBits(d, quick.doubtful) << (kLeafWidth + i);
+  }
+  return bits;
+}
+
+// After TestBlockQuickly: returns which of its triangles the ray meets, at any distance, and makes sure of the doubtful.
+HWY_INLINE uint32_t MakeSure(const TriangleBlock& block, const TriangleRay& ray, uint32_t bits, BlockTest& test) {
+  if (HWY_LIKELY(bits >> kLeafWidth == 0)) return bits;
+  const DLeaf d;
+  const hn::Mask<DLeaf> all = hn::Eq(hn::Zero(d), hn::Zero(d));
+  uint32_t inside = 0;
+  for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+    BlockVertices at(block, ray, i);
+    const TriangleTest<DLeaf> exact =
+        TestTriangle(d, all, at.x, at.y, at.z, hn::Set(d, ray.s_x), hn::Set(d, ray.s_y), hn::Set(d, ray.s_z));
+    test.Store(exact, i);
+    inside |= MaskBits(d, exact.inside) << i;
+  }
+  return (bits | bits >> kLeafWidth) & inside;
+}
+
+// A ray against spheres.
+struct alignas(32) SphereRay {
+  float o[3], a;  // a = d.d
+  float d[3], inv_a;
+};
+
+using SphereRays = Transposed<sizeof(SphereRay) / 16>;
+
+HWY_INLINE SphereRays MakeSphereRays(const Rays& rays) {
+  const VF a = Dot(rays.d, rays.d);
+  SphereRays out;
+  out.Set(0, rays.o.x, rays.o.y, rays.o.z, a);
+  out.Set(1, rays.d.x, rays.d.y, rays.d.z, hn::Div(Splat(1.0f), a));
+  return out;
+}
+
+// Distances in units of the direction, +inf for misses.
+struct SphereTest {
+  HWY_ALIGN float t[kLeafWidth];
+};
+
+// Returns which of the block's spheres are hit within t_max, as bits.
+HWY_INLINE uint32_t TestBlock(const SphereBlock& block, const SphereRay& ray, float t_max, SphereTest& test) {
+  const DLeaf d;
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
+    VLeaf f[3], dir[3];
     HWY_UNROLL(3)
     for (int k = 0; k < 3; ++k) {
-      o_[k] = hn::Set(d, rays.o[k][lane]);
-      dir_[k] = hn::Set(d, rays.d[k][lane]);
+      f[k] = hn::Sub(hn::Set(d, ray.o[k]), hn::Load(d, block.center[k] + i));
+      dir[k] = hn::Set(d, ray.d[k]);
     }
-    a_ = hn::MulAdd(dir_[0], dir_[0], hn::MulAdd(dir_[1], dir_[1], hn::Mul(dir_[2], dir_[2])));
-    inv_a_ = hn::Div(hn::Set(d, 1.0f), a_);
+    const VLeaf t = SphereRoot(d, f, dir, hn::Set(d, ray.a), hn::Set(d, ray.inv_a), hn::Load(d, block.radius + i));
+    hn::Store(t, d, test.t + i);
+    bits |= MaskBits(d, hn::Le(t, hn::Set(d, t_max))) << i;
   }
-
-  HWY_INLINE const SphereBlock& Block(size_t block) const { return blocks_[block]; }
-
-  HWY_INLINE VLeaf Test(const SphereBlock& block, size_t i) const {
-    const DLeaf d;
-    const hn::RebindToSigned<DLeaf> di;
-    VLeaf f[3];
-    HWY_UNROLL(3)
-    for (int k = 0; k < 3; ++k) f[k] = hn::Sub(o_[k], hn::Load(d, block.center[k] + i));
-    const VLeaf t = SphereRoot(d, f, dir_, a_, inv_a_, hn::Load(d, block.radius + i));
-    const auto used = hn::RebindMask(d, hn::Gt(hn::Load(di, Prims(block) + i), hn::Set(di, kNoHit)));
-    return hn::IfThenElse(used, t, hn::Set(d, kInfinity));
-  }
-
-  static HWY_INLINE const int32_t* Prims(const SphereBlock& block) {
-    return reinterpret_cast<const int32_t*>(block.prim);
-  }
-
- private:
-  const SphereBlock* blocks_;
-  VLeaf o_[3], dir_[3], a_, inv_a_;
-};
+  return bits;
+}
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

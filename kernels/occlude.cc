@@ -5,11 +5,11 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
+#include "kernels/flight-inl.h"
 #include "kernels/leaf-inl.h"
 #include "kernels/quad-inl.h"
 #include "kernels/simd-inl.h"
 #include "kernels/sphere-inl.h"
-#include "kernels/traverse-inl.h"
 #include "kernels/triangle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,38 +24,68 @@ HWY_INLINE hn::Mask<D> WithinSegment(D d, V depth, V det) {
   return hn::And(hn::Gt(sided, hn::Zero(d)), hn::Lt(sided, hn::Abs(det)));
 }
 
-HWY_NOINLINE bool WalkTrianglesAny(const Plan& plan, const SlabRays& slabs, const RayLanes& rays, size_t lane) {
-  const DLeaf d;
-  const TriangleLeaf triangles(plan, rays, lane);
-  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
-    const TriangleBlock& block = triangles.Block(b);
+// What a Flight looks for: any triangle within the segment; blocked[ray] = 1 if there is one.
+class AnyTriangle {
+ public:
+  using Block = TriangleBlock;
+  using Ray = TriangleRay;
+  using Test = BlockTest;
+  static constexpr bool kNearest = false;
+
+  AnyTriangle(const Plan& plan, float* blocked) : blocks_(plan.triangle_blocks.data()), blocked_(blocked) {}
+
+  const Block* Blocks() const { return blocks_; }
+  static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
+  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
+    return TestBlockQuickly(block, ray, t_max, test);
+  }
+  HWY_INLINE bool Visit(const Ray& ray, const Block& block, uint32_t hits, Test& test, const NodeRay& node_ray) const {
+    const DLeaf d;
+    const uint32_t met = MakeSure(block, ray, hits, test);
+    uint32_t within = 0;
     for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-      const TriangleTest<DLeaf> test = triangles.Test(block, i);
-      const auto hit =
-          hn::And(hn::And(test.inside, TriangleLeaf::Used(block, i)), WithinSegment(d, test.depth, test.det));
-      if (!hn::AllFalse(d, hit)) return true;
+      within |= MaskBits(d, WithinSegment(d, hn::Load(d, test.depth + i), hn::Load(d, test.det + i))) << i;
+    }
+    if ((met & within) == 0) return false;
+    blocked_[node_ray.index] = 1;
+    return true;
+  }
+
+ private:
+  const Block* blocks_;
+  float* blocked_;
+};
+
+// Any sphere within the segment.
+class AnySphere {
+ public:
+  using Block = SphereBlock;
+  using Ray = SphereRay;
+  using Test = SphereTest;
+  static constexpr bool kNearest = false;
+
+  AnySphere(const Plan& plan, float* blocked) : blocks_(plan.sphere_blocks.data()), blocked_(blocked) {}
+
+  const Block* Blocks() const { return blocks_; }
+  static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
+  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
+    return TestBlock(block, ray, t_max, test);
+  }
+  HWY_INLINE bool Visit(const Ray& /*ray*/, const Block& /*block*/, uint32_t /*hits*/, const Test& test,
+                        const NodeRay& node_ray) const {
+    for (const float root : test.t) {
+      if (root < 1) return blocked_[node_ray.index] = 1, true;
     }
     return false;
-  };
-  return WalkUntil(plan.triangle_tree, slabs, lane, 1.0f, leaf);
-}
+  }
 
-HWY_NOINLINE bool WalkSpheresAny(const Plan& plan, const SlabRays& slabs, const RayLanes& rays, size_t lane) {
-  const DLeaf d;
-  const SphereLeaf spheres(plan, rays, lane);
-  const auto leaf = [&](size_t b) HWY_ATTR __attribute__((always_inline)) {
-    const SphereBlock& block = spheres.Block(b);
-    for (size_t i = 0; i < kLeafWidth; i += hn::Lanes(d)) {
-      if (!hn::AllFalse(d, hn::Lt(spheres.Test(block, i), hn::Set(d, 1.0f)))) return true;
-    }
-    return false;
-  };
-  return WalkUntil(plan.sphere_tree, slabs, lane, 1.0f, leaf);
-}
+ private:
+  const Block* blocks_;
+  float* blocked_;
+};
 
-// Which rays o + t dir, between two points of the scene, meet a primitive with 0 < t < 1. Lanes out of `wanted` meet
-// none.
-HWY_INLINE MF AnyHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted) {
+// Which rays o + t dir, between two points of the scene, meet a primitive of the flat lists with 0 < t < 1.
+HWY_INLINE MF AnyFlatHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted) {
   const DF d;
   const VF one = Splat(1.0f);
   MF hit = hn::Lt(one, hn::Zero(d));
@@ -78,37 +108,71 @@ HWY_INLINE MF AnyHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted
     const VF f[3] = {to.x, to.y, to.z};
     hit = hn::Or(hit, hn::Lt(SphereRoot(d, f, slope, a, inv_a, Splat(sphere.radius)), one));
   }
-  if (plan.triangle_tree.nodes.empty() && plan.sphere_tree.nodes.empty()) return hn::And(wanted, hit);
+  return hit;
+}
 
-  RayLanes rays;
-  rays.Store(o, dir, MakeShear(dir));
-  SlabRays slabs;
-  HWY_ALIGN float blocked[kLanes];
-  hn::Store(hn::IfThenElseZero(hit, one), d, blocked);
-  const auto enter = [&](const Bvh& tree, auto walk) HWY_ATTR {
-    if (tree.nodes.empty()) return;
-    HWY_ALIGN float entering[kLanes];
-    hn::Store(hn::IfThenElseZero(hn::And(wanted, EnterBounds(tree.bounds, o, dir, one, slabs)), one), d, entering);
-    for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (entering[lane] != 0 && blocked[lane] == 0 && walk(plan, slabs, rays, lane)) blocked[lane] = 1;
+void AddLight(const PathState& s, size_t i, MF lit) {
+  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
+  StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);
+}
+
+// A shadow ray's origin, and whether it is wanted at all.
+struct ShadowRay {
+  Vec3 o, l;
+  MF wanted;
+};
+HWY_INLINE ShadowRay LoadShadowRay(const PathState& s, size_t i) {
+  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
+  const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i), n = LoadVec3(s.n_x, s.n_y, s.n_z, i);
+  return {OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), n, hn::Load(DF(), s.err + i), l), l,
+          hn::Gt(MaxElement({hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)}), hn::Zero(DF()))};
+}
+
+void OccludeFlat(const Plan& plan, const PathState& s, Range range) {
+  for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
+    const ShadowRay ray = LoadShadowRay(s, i);
+    if (hn::AllFalse(DF(), ray.wanted)) continue;
+    AddLight(s, i, hn::AndNot(AnyFlatHit(plan, ray.o, ray.l, ray.wanted), ray.wanted));
+  }
+}
+
+constexpr size_t kShadowBatch = 1024;
+using ShadowList = RayList<kShadowBatch>;
+
+HWY_NOINLINE void WalkAnyTriangle(const Plan& plan, const ShadowList& rays, float* blocked) {
+  Flight<AnyTriangle>(plan.triangle_tree, AnyTriangle(plan, blocked)).Walk(rays);
+}
+HWY_NOINLINE void WalkAnySphere(const Plan& plan, const ShadowList& rays, float* blocked) {
+  Flight<AnySphere>(plan.sphere_tree, AnySphere(plan, blocked)).Walk(rays);
+}
+
+void OccludeTrees(const Plan& plan, const PathState& s, Range range) {
+  const DF d;
+  const VF one = Splat(1.0f);
+  ShadowList triangle_rays, sphere_rays;
+  HWY_ALIGN float blocked[kShadowBatch];
+  for (size_t begin = range.begin; begin < range.end; begin += kShadowBatch) {
+    const size_t end = std::min<size_t>(range.end, begin + kShadowBatch);
+    for (size_t i = begin; i < end; i += hn::Lanes(d)) {
+      const ShadowRay ray = LoadShadowRay(s, i);
+      const MF open = hn::AndNot(AnyFlatHit(plan, ray.o, ray.l, ray.wanted), ray.wanted);
+      hn::Store(hn::IfThenZeroElse(open, one), d, blocked + (i - begin));
+      triangle_rays.Add(plan.triangle_tree, i - begin, ray.o, ray.l, one, open);
+      sphere_rays.Add(plan.sphere_tree, i - begin, ray.o, ray.l, one, open);
     }
-  };
-  enter(plan.triangle_tree, WalkTrianglesAny);
-  enter(plan.sphere_tree, WalkSpheresAny);
-  return hn::And(wanted, hn::Gt(hn::Load(d, blocked), hn::Zero(d)));
+    if (triangle_rays.size() > 0) WalkAnyTriangle(plan, triangle_rays, blocked);
+    if (sphere_rays.size() > 0) WalkAnySphere(plan, sphere_rays, blocked);
+    triangle_rays.clear();
+    sphere_rays.clear();
+    for (size_t i = begin; i < end; i += hn::Lanes(d)) {
+      AddLight(s, i, hn::Eq(hn::Load(d, blocked + (i - begin)), hn::Zero(d)));
+    }
+  }
 }
 
 void Occlude(const Plan& plan, const PathState& s, Range range) {
-  const DF d;
-  for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
-    const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
-    const MF wanted = hn::Gt(MaxElement({hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)}), hn::Zero(d));
-    if (hn::AllFalse(d, wanted)) continue;
-    const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i), n = LoadVec3(s.n_x, s.n_y, s.n_z, i);
-    const Vec3 o = OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), n, hn::Load(d, s.err + i), l);
-    const MF lit = hn::Not(AnyHit(plan, o, l, wanted));
-    StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);
-  }
+  const bool flat = plan.triangle_tree.nodes.empty() && plan.sphere_tree.nodes.empty();
+  (flat ? OccludeFlat : OccludeTrees)(plan, s, range);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

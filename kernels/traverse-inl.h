@@ -1,5 +1,4 @@
-// One ray at a time through an 8-wide Bvh, its node's children in the lanes; and what decides, for a vector of rays,
-// which of them enter it at all.
+// One ray in an 8-wide Bvh: what decides whether it enters the tree, and its test of a node.
 #if defined(LANEWISE_KERNELS_TRAVERSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LANEWISE_KERNELS_TRAVERSE_INL_H_
 #undef LANEWISE_KERNELS_TRAVERSE_INL_H_
@@ -8,10 +7,11 @@
 #endif
 
 #include <bit>
+#include <cstring>
 #include <limits>
-#include <utility>
 
 #include "core/bvh.h"
+#include "kernels/compress-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,6 +19,7 @@ namespace lanewise {
 namespace HWY_NAMESPACE {
 
 using DChild = hn::CappedTag<float, kBvhWidth>;
+using VChild = hn::Vec<DChild>;
 
 // A direction's components are at least this share of the largest, so that every reciprocal is finite and no slab makes
 // a NaN; a ray bent so little strays far less than kSlabSlack.
@@ -30,46 +31,53 @@ constexpr float kSlabSlack = 0x1p-20f;
 // 1 + 2 gamma(3) for the far planes (Ize, Robust BVH Ray Traversal, JCGT 2(2), 2013).
 constexpr float kFarScale = 1.0f + 6 * 0x1p-24f + 0x1p-22f;
 
-// A vector of rays against slabs: distances are plane * rcp - near (or far) for the planes that a ray meets first (or
-// last). Stored, because rays then walk one by one.
+// A vector of rays against slabs: a plane's distance is plane * rcp - near for the planes that a ray meets first, and
+// (plane * rcp - far) * kFarScale for those that it meets last.
 struct SlabRays {
-  HWY_ALIGN float rcp[3][kLanes], rcp_far[3][kLanes], near[3][kLanes], far[3][kLanes];
-};
+  VF rcp[3], near[3], far[3];
+  VF size;  // finite for rays of numbers alone
 
-// Returns which rays meet the box at a distance in [0, t_max].
-HWY_INLINE MF EnterBounds(const Box& box, const Vec3& o, const Vec3& dir, VF t_max, SlabRays& rays) {
-  const DF d;
-  const VF origin[3] = {o.x, o.y, o.z}, slope[3] = {dir.x, dir.y, dir.z};
-  const VF steepest = hn::Max(hn::Abs(dir.x), hn::Max(hn::Abs(dir.y), hn::Abs(dir.z)));
-  const VF least = hn::Mul(steepest, Splat(kLeastSlope));
-  VF reach = hn::Zero(d);
-  HWY_UNROLL(3)
-  for (int a = 0; a < 3; ++a) {
-    reach = hn::Max(
-        reach, hn::Max(hn::Abs(hn::Sub(Splat(box.lo[a]), origin[a])), hn::Abs(hn::Sub(Splat(box.hi[a]), origin[a]))));
-    reach = hn::Max(reach, hn::Abs(origin[a]));
+  // bounds: of all boxes that the rays will be tested against.
+  HWY_INLINE SlabRays(const Box& bounds, const Vec3& o, const Vec3& dir) {
+    const VF origin[3] = {o.x, o.y, o.z}, slope[3] = {dir.x, dir.y, dir.z};
+    const VF steepest = hn::Max(hn::Abs(dir.x), hn::Max(hn::Abs(dir.y), hn::Abs(dir.z)));
+    const VF least = hn::Mul(steepest, Splat(kLeastSlope));
+    VF reach = hn::Zero(DF());
+    HWY_UNROLL(3)
+    for (int a = 0; a < 3; ++a) {
+      reach = hn::Max(reach, hn::Max(hn::Abs(hn::Sub(Splat(bounds.lo[a]), origin[a])),
+                                     hn::Abs(hn::Sub(Splat(bounds.hi[a]), origin[a]))));
+      reach = hn::Max(reach, hn::Abs(origin[a]));
+    }
+    const VF slack = hn::Mul(reach, Splat(kSlabSlack));
+    size = hn::Zero(DF());
+    HWY_UNROLL(3)
+    for (int a = 0; a < 3; ++a) {
+      rcp[a] = hn::Div(Splat(1.0f), hn::CopySign(hn::Max(hn::Abs(slope[a]), least), slope[a]));
+      const VF around = hn::Mul(slack, hn::Abs(rcp[a]));
+      near[a] = hn::MulAdd(origin[a], rcp[a], around);
+      far[a] = hn::MulSub(origin[a], rcp[a], around);
+      size = hn::Add(size, hn::Add(hn::Abs(slope[a]), hn::Add(hn::Abs(near[a]), hn::Abs(far[a]))));
+    }
   }
-  const VF slack = hn::Mul(reach, Splat(kSlabSlack));
-  VF t_near = hn::Zero(d), t_far = t_max, finite = hn::Zero(d);
-  HWY_UNROLL(3)
-  for (int a = 0; a < 3; ++a) {
-    const VF rcp = hn::Div(Splat(1.0f), hn::CopySign(hn::Max(hn::Abs(slope[a]), least), slope[a]));
-    const VF rcp_far = hn::Mul(rcp, Splat(kFarScale));
-    const VF near = hn::MulAdd(slack, hn::Abs(rcp), hn::Mul(origin[a], rcp));
-    const VF far = hn::NegMulAdd(slack, hn::Abs(rcp_far), hn::Mul(origin[a], rcp_far));
-    hn::Store(rcp, d, rays.rcp[a]);
-    hn::Store(rcp_far, d, rays.rcp_far[a]);
-    hn::Store(near, d, rays.near[a]);
-    hn::Store(far, d, rays.far[a]);
-    finite = hn::Add(finite, hn::Add(hn::Abs(slope[a]), hn::Add(hn::Abs(near), hn::Abs(far))));
-    const VF lo = Splat(box.lo[a]), hi = Splat(box.hi[a]);
-    const MF backward = hn::Lt(rcp, hn::Zero(d));
-    t_near = hn::Max(t_near, hn::MulSub(hn::IfThenElse(backward, hi, lo), rcp, near));
-    t_far = hn::Min(t_far, hn::MulSub(hn::IfThenElse(backward, lo, hi), rcp_far, far));
+
+  HWY_INLINE MF Backward(int axis) const { return hn::Lt(rcp[axis], hn::Zero(DF())); }
+
+  // Which rays meet the box at a distance in [0, t_max].
+  HWY_INLINE MF Meet(const Box& box, VF t_max) const {
+    VF t_near = hn::Zero(DF()), t_far = Splat(std::numeric_limits<float>::infinity());
+    HWY_UNROLL(3)
+    for (int a = 0; a < 3; ++a) {
+      const MF backward = Backward(a);
+      const VF lo = Splat(box.lo[a]), hi = Splat(box.hi[a]);
+      t_near = hn::Max(t_near, hn::MulSub(hn::IfThenElse(backward, hi, lo), rcp[a], near[a]));
+      t_far = hn::Min(t_far, hn::MulSub(hn::IfThenElse(backward, lo, hi), rcp[a], far[a]));
+    }
+    t_far = hn::Min(hn::Mul(t_far, Splat(kFarScale)), t_max);
+    // Min and Max would hide the NaNs that other rays make of an unused child's infinite planes, and let them in.
+    return hn::And(hn::Le(t_near, t_far), hn::Lt(size, Splat(std::numeric_limits<float>::infinity())));
   }
-  // Min and Max would hide the NaNs that other rays make of an unused child's infinite planes, and let them in.
-  return hn::And(hn::Le(t_near, t_far), hn::Lt(finite, Splat(std::numeric_limits<float>::infinity())));
-}
+};
 
 // Bit i is lane i of a mask of up to 8 lanes.
 template <class D>
@@ -79,112 +87,158 @@ HWY_INLINE uint32_t MaskBits(D d, hn::Mask<D> mask) {
   return bits[0];
 }
 
-// One of the rays, ready for nodes.
-class NodeTest {
- public:
-  HWY_INLINE NodeTest(const SlabRays& rays, size_t lane) {
-    const DChild d;
-    HWY_UNROLL(3)
-    for (size_t a = 0; a < 3; ++a) {
-      const size_t backward = rays.rcp[a][lane] < 0 ? 3 : 0;
-      near_row_[a] = (a + backward) * kBvhWidth;
-      far_row_[a] = (a + 3 - backward) * kBvhWidth;
-      rcp_[a] = hn::Set(d, rays.rcp[a][lane]);
-      rcp_far_[a] = hn::Set(d, rays.rcp_far[a][lane]);
-      near_[a] = hn::Set(d, rays.near[a][lane]);
-      far_[a] = hn::Set(d, rays.far[a][lane]);
+// One ray in flight, ready for nodes.
+struct alignas(64) NodeRay {
+  float rcp[3], t_max;
+  float near[3], unused0;
+  float far[3], unused1;
+  uint32_t order;  // slots of hit children are pushed in the order 0 ^ order .. 7 ^ order: farthest first
+  uint32_t index;  // of the ray, as the caller counts
+  uint32_t child;  // the next step: as BvhNode has it, or what stands for the end
+  uint32_t top;    // of the ray's part of the stack: the first free word
+};
+
+// Structs of 4 * kQuads words, one a lane, made from vectors of their words.
+template <size_t kQuads>
+struct Transposed {
+  HWY_ALIGN float words[kQuads][4 * hn::MaxLanes(DF())];
+
+  HWY_INLINE void Set(size_t quad, VF a, VF b, VF c, VF d) { hn::StoreInterleaved4(a, b, c, d, DF(), words[quad]); }
+  HWY_INLINE void Get(size_t lane, void* to) const {
+    for (size_t q = 0; q < kQuads; ++q) std::memcpy(static_cast<char*>(to) + 16 * q, words[q] + 4 * lane, 16);
+  }
+};
+HWY_INLINE VF AsFloat(VU words) { return hn::BitCast(DF(), words); }
+
+// A vector of rays that walk a tree, and their indices as the caller counts.
+struct Rays {
+  Vec3 o, d;
+  VF t_max;
+  VU index;
+};
+
+using NodeRays = Transposed<sizeof(NodeRay) / 16>;
+
+HWY_INLINE NodeRays MakeNodeRays(const Box& bounds, const Rays& rays) {
+  const DU du;
+  const VF zero = hn::Zero(DF());
+  const SlabRays slabs(bounds, rays.o, rays.d);
+  VU order = hn::Set(du, kBvhWidth - 1);
+  HWY_UNROLL(3)
+  for (int a = 0; a < 3; ++a) {
+    order = hn::Sub(order, hn::IfThenElseZero(hn::RebindMask(du, slabs.Backward(a)), hn::Set(du, 1u << a)));
+  }
+  NodeRays out;
+  out.Set(0, slabs.rcp[0], slabs.rcp[1], slabs.rcp[2], rays.t_max);
+  out.Set(1, slabs.near[0], slabs.near[1], slabs.near[2], zero);
+  out.Set(2, slabs.far[0], slabs.far[1], slabs.far[2], zero);
+  out.Set(3, AsFloat(order), AsFloat(rays.index), zero, zero);
+  return out;
+}
+
+#ifndef LANEWISE_KERNELS_TRAVERSE_ONCE
+#define LANEWISE_KERNELS_TRAVERSE_ONCE
+}  // namespace HWY_NAMESPACE
+
+// Bit j of masks[x][mask] is bit j ^ x of mask.
+struct ExclusiveOrTable {
+  alignas(64) uint8_t masks[8][256];
+};
+constexpr ExclusiveOrTable make_exclusive_or_table() {
+  ExclusiveOrTable table{};
+  for (int x = 0; x < 8; ++x) {
+    for (int mask = 0; mask < 256; ++mask) {
+      for (int j = 0; j < 8; ++j) table.masks[x][mask] |= static_cast<uint8_t>((mask >> (j ^ x) & 1) << j);
     }
   }
+  return table;
+}
+inline constexpr ExclusiveOrTable kExclusiveOrTable = make_exclusive_or_table();
 
-  // The children met at a distance in [0, t_max] as bits; entry: distances, for those.
-  HWY_INLINE uint32_t operator()(const BvhNode& node, float t_max, float* entry) const {
+// Bytes from a node to the planes that a ray meets first (x, y, z) and last, by its NodeRay::order.
+struct PlaneRows {
+  uint32_t near[3], far[3], unused[2];
+};
+struct PlaneRowsTable {
+  alignas(64) PlaneRows rows[8];
+};
+constexpr PlaneRowsTable make_plane_rows_table() {
+  PlaneRowsTable table{};
+  for (uint32_t order = 0; order < 8; ++order) {
+    for (uint32_t a = 0; a < 3; ++a) {
+      const bool forward = order >> a & 1;
+      table.rows[order].near[a] = (forward ? a : a + 3) * kBvhWidth * sizeof(float);
+      table.rows[order].far[a] = (forward ? a + 3 : a) * kBvhWidth * sizeof(float);
+    }
+  }
+  return table;
+}
+inline constexpr PlaneRowsTable kPlaneRowsTable = make_plane_rows_table();
+
+namespace HWY_NAMESPACE {
+#endif
+
+// A ray against the children of a node.
+class NodeTest {
+ public:
+  HWY_INLINE NodeTest(const BvhNode& node, const NodeRay& ray)
+      : node_(node), ray_(ray), rows_(kPlaneRowsTable.rows[ray.order]) {}
+
+  // Those that it meets at a distance in [0, t_max] as bits; entries: where, one a child.
+  HWY_INLINE uint32_t Hits(float* HWY_RESTRICT entries) const {
     const DChild d;
-    const float* rows = reinterpret_cast<const float*>(&node);  // lo x y z, hi x y z
     uint32_t hits = 0;
     for (size_t i = 0; i < kBvhWidth; i += hn::Lanes(d)) {
-      const auto near = [&](size_t a)
-                            HWY_ATTR { return hn::MulSub(hn::Load(d, rows + near_row_[a] + i), rcp_[a], near_[a]); };
-      const auto far = [&](size_t a)
-                           HWY_ATTR { return hn::MulSub(hn::Load(d, rows + far_row_[a] + i), rcp_far_[a], far_[a]); };
-      const VChild t_near = hn::Max(hn::Max(near(0), near(1)), hn::Max(near(2), hn::Zero(d)));
-      const VChild t_far = hn::Min(hn::Min(far(0), far(1)), hn::Min(far(2), hn::Set(d, t_max)));
-      hn::Store(t_near, d, entry + i);
-      hits |= MaskBits(d, hn::Le(t_near, t_far)) << i;
+      const VChild enter = hn::Max(hn::Max(Near(0, i), Near(1, i)), hn::Max(Near(2, i), hn::Zero(d)));
+      const VChild leave = hn::Mul(hn::Min(hn::Min(Far(0, i), Far(1, i)), Far(2, i)), hn::Set(d, kFarScale));
+      hn::Store(enter, d, entries + i);
+      hits |= MaskBits(d, hn::Le(enter, hn::Min(leave, hn::Set(d, ray_.t_max)))) << i;
     }
     return hits;
   }
 
  private:
-  using VChild = hn::Vec<DChild>;
-  VChild rcp_[3], rcp_far_[3], near_[3], far_[3];
-  size_t near_row_[3], far_row_[3];
+  HWY_INLINE VChild Row(uint32_t bytes, size_t i) const {
+    return hn::Load(DChild(), reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node_) + bytes) + i);
+  }
+  HWY_INLINE VChild Near(uint32_t a, size_t i) const {
+    const DChild d;
+    return hn::MulSub(Row(rows_.near[a], i), hn::Set(d, ray_.rcp[a]), hn::Set(d, ray_.near[a]));
+  }
+  HWY_INLINE VChild Far(uint32_t a, size_t i) const {
+    const DChild d;
+    return hn::MulSub(Row(rows_.far[a], i), hn::Set(d, ray_.rcp[a]), hn::Set(d, ray_.far[a]));
+  }
+
+  const BvhNode& node_;
+  const NodeRay& ray_;
+  const PlaneRows& rows_;
 };
 
-// Visits, nearest first, the leaves that the ray may meet at a distance of t_max or less; leaf(block) may lower t_max.
-template <class Leaf>
-HWY_INLINE void WalkNearestFirst(const Bvh& bvh, const SlabRays& rays, size_t lane, const float& t_max, Leaf& leaf) {
-  struct Waiting {
-    uint32_t child;
-    float entry;
-  };
-  const NodeTest test(rays, lane);
-  Waiting stack[kBvhStackSize];
-  size_t depth = 0;
-  uint32_t child = 0;
-  for (;;) {
-    if (child & kLeafBit) {
-      leaf(leaf_block(child));
-    } else {
-      const BvhNode& node = bvh.nodes[child];
-      HWY_ALIGN float entry[kBvhWidth];
-      uint32_t hits = test(node, t_max, entry);
-      if (hits != 0) {
-        uint32_t i = static_cast<uint32_t>(std::countr_zero(hits));
-        hits &= hits - 1;
-        Waiting nearest{node.child[i], entry[i]};
-        // The farther ones are put onto the stack where they belong, the farthest of this node lowest.
-        const size_t base = depth;
-        while (hits != 0) {
-          i = static_cast<uint32_t>(std::countr_zero(hits));
-          hits &= hits - 1;
-          Waiting next{node.child[i], entry[i]};
-          if (next.entry < nearest.entry) std::swap(next, nearest);
-          size_t at = depth++;
-          for (; at > base && stack[at - 1].entry < next.entry; --at) stack[at] = stack[at - 1];
-          stack[at] = next;
-        }
-        child = nearest.child;
-        continue;
-      }
+// Pushes the children that are hit, the nearest last, and if the walk is one for the nearest, where the ray enters them.
+// Writes up to kBvhWidth words past what it returns: their number.
+template <bool kNearest>
+HWY_INLINE uint32_t PushChildren(const BvhNode& node, uint32_t hits, uint32_t order, const float* from_entries,
+                                 uint32_t* HWY_RESTRICT children, float* HWY_RESTRICT entries) {
+  const DChild d;
+  const hn::RebindToUnsigned<DChild> du;
+  if constexpr (hn::MaxLanes(DChild()) == kBvhWidth) {
+    const uint32_t ordered = kNearest ? kExclusiveOrTable.masks[order][hits] : hits;
+    const hn::Rebind<uint8_t, DChild> bytes;
+    auto slots = hn::PromoteTo(du, hn::LoadU(bytes, kCompressTable.rows[ordered]));
+    if (kNearest) slots = hn::Xor(slots, hn::Set(du, order));
+    hn::StoreU(hn::TableLookupLanes(hn::Load(du, node.child), hn::IndicesFromVec(du, slots)), du, children);
+    if (kNearest) hn::StoreU(hn::TableLookupLanes(hn::Load(d, from_entries), hn::IndicesFromVec(d, slots)), d, entries);
+    return static_cast<uint32_t>(std::popcount(hits));
+  } else {
+    uint32_t n = 0;
+    for (uint32_t j = 0; j < kBvhWidth; ++j) {
+      const uint32_t slot = j ^ order;
+      children[n] = node.child[slot];
+      if (kNearest) entries[n] = from_entries[slot];
+      n += hits >> slot & 1;
     }
-    do {
-      if (depth == 0) return;
-      --depth;
-    } while (stack[depth].entry > t_max);
-    child = stack[depth].child;
-  }
-}
-
-// Visits the leaves that the ray may meet within t_max, in no order, until leaf(block) returns true. Returns whether one
-// did.
-template <class Leaf>
-HWY_INLINE bool WalkUntil(const Bvh& bvh, const SlabRays& rays, size_t lane, float t_max, Leaf& leaf) {
-  const NodeTest test(rays, lane);
-  uint32_t stack[kBvhStackSize];
-  size_t depth = 0;
-  uint32_t child = 0;
-  for (;;) {
-    if (child & kLeafBit) {
-      if (leaf(leaf_block(child))) return true;
-    } else {
-      const BvhNode& node = bvh.nodes[child];
-      HWY_ALIGN float entry[kBvhWidth];
-      for (uint32_t hits = test(node, t_max, entry); hits != 0; hits &= hits - 1) {
-        stack[depth++] = node.child[std::countr_zero(hits)];
-      }
-    }
-    if (depth == 0) return false;
-    child = stack[--depth];
+    return n;
   }
 }
 

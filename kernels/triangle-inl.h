@@ -65,22 +65,62 @@ struct TriangleTest {
   hn::Mask<D> inside;
 };
 
-// x, y, z: the three vertices relative to the ray's origin, the ray's major axis as z. Lanes out of `valid` may be
-// reported inside; they only never take the slow way.
-template <class D, class V = hn::Vec<D>, class M = hn::Mask<D>>
-HWY_INLINE TriangleTest<D> TestTriangle(D d, M valid, V (&x)[3], V (&y)[3], const V (&z)[3], V s_x, V s_y, V s_z) {
+// Takes the vertices x, y, z, relative to the ray's origin and with the ray's major axis as z, along the ray to the plane
+// z = 0, in place. weight[k]: the edge function opposite vertex k.
+template <class V>
+HWY_INLINE void EdgeFunctions(V (&x)[3], V (&y)[3], const V (&z)[3], V s_x, V s_y, V (&weight)[3]) {
   HWY_UNROLL(3)
   for (int k = 0; k < 3; ++k) {
     x[k] = hn::NegMulAdd(s_x, z[k], x[k]);
     y[k] = hn::NegMulAdd(s_y, z[k], y[k]);
   }
-  TriangleTest<D> test;
-  V(&w)[3] = test.weight;
   // Two products and a difference, each rounded: so the two triangles at an edge get values that are each other's
   // negation, and a sign is never wrong, for rounding is monotonic; at worst the value is 0.
-  w[0] = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
-  w[1] = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
-  w[2] = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
+  weight[0] = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
+  weight[1] = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
+  weight[2] = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
+}
+
+// det and depth from the weights.
+template <class V, class Test>
+HWY_INLINE void FinishTest(const V (&z)[3], V s_z, Test& test) {
+  const V(&w)[3] = test.weight;
+  test.det = hn::Add(w[0], hn::Add(w[1], w[2]));
+  test.depth = hn::Mul(s_z, hn::MulAdd(w[0], z[0], hn::MulAdd(w[1], z[1], hn::Mul(w[2], z[2]))));
+}
+
+// What TestTriangle says where no edge function is 0, without its slow way and without dividing.
+template <class D>
+struct QuickTest {
+  hn::Vec<D> weight[3], det, depth;
+  hn::Mask<D> hit;       // with 0 <= depth / det <= t_max, give or take some rounding
+  hn::Mask<D> doubtful;  // an edge function is 0: TestTriangle may say otherwise
+};
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE QuickTest<D> TestQuickly(D d, V (&x)[3], V (&y)[3], const V (&z)[3], V s_x, V s_y, V s_z, float t_max) {
+  QuickTest<D> test;
+  V(&w)[3] = test.weight;
+  EdgeFunctions(x, y, z, s_x, s_y, w);
+  const V zero = hn::Zero(d);
+  const V least = hn::Min(w[0], hn::Min(w[1], w[2])), most = hn::Max(w[0], hn::Max(w[1], w[2]));
+  FinishTest(z, s_z, test);
+  // Rounding in depth, det and the quotient moves the limits by less than this; the product may underflow.
+  constexpr float kRounding = 1 + 0x1p-20f, kSmallest = 0x1p-140f;
+  const V sided = hn::Xor(test.depth, hn::And(test.det, hn::SignBit(d)));
+  const V limit = hn::MulAdd(hn::Abs(test.det), hn::Set(d, t_max * kRounding), hn::Set(d, kSmallest));
+  const auto clear = hn::Or(hn::Gt(least, zero), hn::Lt(most, zero));
+  const auto inside = hn::Or(hn::Ge(least, zero), hn::Le(most, zero));
+  test.hit = hn::And(clear, hn::And(hn::Ge(sided, zero), hn::Le(sided, limit)));
+  test.doubtful = hn::AndNot(clear, inside);
+  return test;
+}
+
+// x, y, z as for EdgeFunctions. Lanes out of `valid` may be reported inside; they only never take the slow way.
+template <class D, class V = hn::Vec<D>, class M = hn::Mask<D>>
+HWY_INLINE TriangleTest<D> TestTriangle(D d, M valid, V (&x)[3], V (&y)[3], const V (&z)[3], V s_x, V s_y, V s_z) {
+  TriangleTest<D> test;
+  V(&w)[3] = test.weight;
+  EdgeFunctions(x, y, z, s_x, s_y, w);
   const V zero = hn::Zero(d);
   V least = hn::Min(w[0], hn::Min(w[1], w[2])), most = hn::Max(w[0], hn::Max(w[1], w[2]));
   test.inside = hn::Or(hn::Ge(least, zero), hn::Le(most, zero));
@@ -98,8 +138,7 @@ HWY_INLINE TriangleTest<D> TestTriangle(D d, M valid, V (&x)[3], V (&y)[3], cons
     most = hn::Max(w[0], hn::Max(w[1], w[2]));
     test.inside = hn::Or(hn::Ge(least, zero), hn::Le(most, zero));
   }
-  test.det = hn::Add(w[0], hn::Add(w[1], w[2]));
-  test.depth = hn::Mul(s_z, hn::MulAdd(w[0], z[0], hn::MulAdd(w[1], z[1], hn::Mul(w[2], z[2]))));
+  FinishTest(z, s_z, test);
   return test;
 }
 
