@@ -1,8 +1,8 @@
 // Table of contents: every kernel, in the order in which data flows through them.
 //
 // A kernel is a pure function of the plan and of its lanes: no lane depends on another, nothing is allocated, read from
-// a file or kept. It may touch slots [range.begin, range.end rounded up to kLanes) and writes only the fields listed
-// (padding lanes hold the harmless dummy path). Each runs the best instruction set that the machine has and hwy allows;
+// a file or kept. It may touch slots [range.begin, range.end rounded up to kLanes) and reads and writes only the fields listed
+// below it (padding lanes hold the harmless dummy path). Each runs the best instruction set that the machine has and hwy allows;
 // its scalar twin of the same name is kernels/reference/<file>.h, a template over float (what the kernel reproduces)
 // and double (the oracle). "p" below is the hit point in o_x, o_y, o_z once `surface` has run. Radiance in W / (m^2
 // sr), lengths in scene units, densities per steradian.
@@ -14,6 +14,7 @@
 #include "core/plan.h"
 #include "core/types.h"
 #include "kernels/bounds.h"
+#include "kernels/fields.h"
 
 namespace lanewise {
 
@@ -21,8 +22,8 @@ using Kernel = void(const Plan&, const PathState&, Range);
 
 // Starts camera paths: uniform in the pixel (a box filter of one pixel), from the eye or, with a thin lens, uniform on the
 // lens and through the point where the ray from the eye meets the plane in focus.
-// reads: batch. writes: pixel sample slot o d beta L pdf.
 void generate(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kGenerateFields = {.reads = "batch", .writes = "pixel sample slot o d beta L pdf"};
 constexpr KernelBounds kGenerateBounds = {.fields = {exact("pixel"), exact("sample"), reach_ulps("o", 0.25),
                                                      exact("beta"), exact("L"), exact("pdf"), ulps("d", 2.5)}};
 
@@ -30,8 +31,8 @@ constexpr KernelBounds kGenerateBounds = {.fields = {exact("pixel"), exact("samp
 // stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path with beta = 0
 // is not traced and goes to kFinished, as does one that misses, or that may not scatter at what it meets because it has done
 // so max_depth times.
-// reads: o d beta, step. writes: prim t u v bin.
 void intersect(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kIntersectFields = {.reads = "o d beta step", .writes = "prim t u v bin"};
 // The choice is that of the primitive. Of those that share the edge or vertex that is hit, rounding decides which it is; the
 // distance is the same. A few rays in a hundred are aimed at edges.
 constexpr KernelBounds kIntersectBounds = {
@@ -56,62 +57,67 @@ struct Bins {
 // Moves every path to its bin, and drops the padding that the sort before left: stable, bins contiguous, each padded with
 // the dummy path to a multiple of kLanes. The only kernel in which lanes meet. Of what goes to kFinished only slot and L are
 // moved: nothing else of it will be read.
-// reads: bin, slot and all KEPT fields of from. writes: all KEPT fields of to, all fields of its padding.
+// Writes also all fields of the padding.
 Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
+constexpr KernelFields kSortFields = {.reads = "bin KEPT", .writes = "KEPT"};
 
 // Adds the radiance of the light that was hit from its front, weighted against light sampling by the power heuristic
 // (Veach 1997, eq. 9.13 with exponent 2).
-// reads: prim t o d beta pdf L. writes: L.
 void emission(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kEmissionFields = {.reads = "prim t o d beta pdf L", .writes = "L"};
 // Hangs on the cosine at grazing angles; front or back is a choice.
 constexpr KernelBounds kEmissionBounds = {.fields = {input_ulps("L", 3)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Hands the radiance of finished paths over to the wave's result, by slot.
-// reads: slot L. writes: result.
 void retire(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kRetireFields = {.reads = "slot L", .writes = "result"};
 
 // From a hit to a shading point: the hit point, put back onto the surface along its normal, its normals and the
 // distance that a ray origin must keep (Waechter & Binder, Ray Tracing Gems ch. 6; pbrt 4 sec. 6.8 for the bounds).
-// reads: prim t u v o d. writes: o n s err.
 void surface(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kSurfaceFields = {.reads = "prim t u v o d", .writes = "o n s err"};
 // The normals of small spheres magnify the rounding of the hit point.
 constexpr KernelBounds kSurfaceBounds = {
     .fields = {reach_ulps("o", 2), input_ulps("n", 0.5), input_ulps("s", 2), exact("err")}};
 
 // Samples light step.light by area and aims at it; l_pdf is 0 where the surface is behind the light.
-// reads: pixel sample o n err, step. writes: l l_pdf.
 void sample_light(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kSampleLightFields = {.reads = "pixel sample o n err step", .writes = "l l_pdf"};
 // The density has no bound in the light's own plane; its inverse, which is what c is made with, goes to 0 there. The choice is
 // the side that the origin is moved to.
 constexpr KernelBounds kSampleLightBounds = {.fields = {reach_ulps("l", 2.5), inverse_input_ulps("l_pdf", 3)},
                                              .choice = {.margin = 4, .max_share = 2e-4}};
 
 // -H: aims uniformly into the hemisphere around the viewer's side of the shading normal; l is a unit vector.
-// reads: pixel sample d s, step. writes: l l_pdf.
 void sample_hemisphere(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kSampleHemisphereFields = {.reads = "pixel sample d s step", .writes = "l l_pdf"};
 constexpr KernelBounds kSampleHemisphereBounds = {.fields = {ulps("l", 3), exact("l_pdf")}};
 
 // light_<material>: what the light sample adds if it is seen: c = beta f |cos| radiance / (l_pdf samples), times the MIS
 // weight against the material's own density. With -H the radiance is not known yet and left out.
-// reads: d s beta l l_pdf prim, step. writes: c.
 // shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves the origin off the surface.
-// reads: pixel sample prim o d n s err beta, step. writes: o d beta pdf.
 void light_diffuse(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kLightDiffuseFields = {.reads = "prim d s beta l l_pdf step", .writes = "c"};
 // Hangs on the cosine at grazing angles.
 constexpr KernelBounds kLightDiffuseBounds = {.fields = {input_ulps("c", 4)},
                                               .choice = {.margin = 4, .max_share = 2e-4}};
 void shade_diffuse(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kShadeDiffuseFields = {.reads = "pixel sample prim o d n s err beta step",
+                                              .writes = "o d beta pdf"};
 // The choices, here and for the other materials: the side that the path arrives from, and the side that the origin is moved to.
 constexpr KernelBounds kShadeDiffuseBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 2.5), ulps("pdf", 3)},
                                               .choice = {.margin = 4, .max_share = 2e-4}};
 // Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
 void light_microfacet(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kLightMicrofacetFields = {.reads = "prim d s beta l l_pdf step", .writes = "c"};
 // Beckmann's exponent, tan^2 / alpha^2, hangs on the last bits of every direction when alpha is small, and those of the half
 // vector, rounded on the way, add to what moving the directions shows: so above 4 ulp. Where e^x is below float's range it
 // counts as 0.
 constexpr KernelBounds kLightMicrofacetBounds = {.fields = {input_ulps("c", 7, 1e-24)},
                                                  .choice = {.margin = 4, .max_share = 2e-4}};
 void shade_microfacet(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kShadeMicrofacetFields = {.reads = "pixel sample prim o d n s err beta step",
+                                                 .writes = "o d beta pdf"};
 // Above 4 ulp: a visible slope is where its distribution, which a float knows to 1e-6, takes a value, and in the tails small
 // errors of it move the slope. That the pdf is the density of the direction that was really sampled does not hang on this.
 constexpr KernelBounds kShadeMicrofacetBounds = {
@@ -119,11 +125,14 @@ constexpr KernelBounds kShadeMicrofacetBounds = {
     .choice = {.margin = 4, .max_share = 2e-4}};
 // Perfect reflection; pdf = 0 (delta).
 void shade_mirror(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kShadeMirrorFields = {.reads = "prim o d n s err beta", .writes = "o d beta pdf"};
 constexpr KernelBounds kShadeMirrorBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 3), exact("pdf")},
                                              .choice = {.margin = 4, .max_share = 2e-4}};
 // Smooth dielectric: reflects or refracts by the Fresnel reflectance; refracted radiance scales with the squared ratio
 // of indices (Veach 1997, ch. 5); pdf = 0 (delta).
 void shade_glass(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kShadeGlassFields = {.reads = "pixel sample prim o d n s err beta step",
+                                            .writes = "o d beta pdf"};
 // The refracted direction hangs on a root near the critical angle. A choice is also that of the lobe.
 constexpr KernelBounds kShadeGlassBounds = {
     .fields = {ulps("beta", 3), ulps("o", 0.9), input_ulps("d", 1), exact("pdf")},
@@ -131,21 +140,21 @@ constexpr KernelBounds kShadeGlassBounds = {
 
 // Any hit on the open segment from the offset hit point to the light sample: if there is none, L += c. Not traced where
 // c = 0. Faces that cannot block light between points of the scene are left out: the plan knows which.
-// reads: o n err l c L. writes: L.
 void occlude(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kOccludeFields = {.reads = "o n err l c L", .writes = "L"};
 // The choice: blocked or not.
 constexpr KernelBounds kOccludeBounds = {.fields = {ulps("L", 1)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
 // -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter. Not traced where c = 0.
-// reads: o n err l c L. writes: L.
 void gather_emission(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kGatherEmissionFields = {.reads = "o n err l c L", .writes = "L"};
 constexpr KernelBounds kGatherEmissionBounds = {.fields = {ulps("L", 2)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Russian roulette from bounce kRouletteBounce on: survives with probability q = min(1, max channel of beta) and beta / q,
 // else beta = 0; unbiased for every q. So it never lifts a throughput above 1, and what ends a path of throughput 1 is
 // max_depth alone: a survival bounded below 1 would raise such paths by 1 / q at every bounce, and the variance without end.
-// reads: pixel sample beta, step. writes: beta.
 void roulette(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kRouletteFields = {.reads = "pixel sample beta step", .writes = "beta"};
 constexpr KernelBounds kRouletteBounds = {.fields = {ulps("beta", 2.5)}};
 constexpr uint32_t kRouletteBounce = 4;
 
@@ -173,8 +182,9 @@ struct PixelSums {
 
 // Adds the batch's samples to their pixels, film[pixel], each pixel's in the order of its samples: so the sums have the
 // same bits however samples are cut into waves. A sample with a NaN, infinite or negative channel counts as black.
-// reads: batch, result. Returns the number of such invalid samples.
+// Returns the number of such invalid samples.
 uint32_t accumulate(const PathState& s, PixelSums* film);
+constexpr KernelFields kAccumulateFields = {.reads = "batch result", .writes = ""};
 
 // How many paths of the range have a light sample worth a shadow ray: c != 0.
 uint32_t count_shadow_rays(const PathState& s, Range range);
