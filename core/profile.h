@@ -1,24 +1,42 @@
-// What a wave counts while it runs: calls, paths, lanes and time of each stage, rays, and the lengths of paths.
+// What a render counts: calls, paths, lanes, rays and time of each stage at each bounce, and the lengths of paths.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "core/queue_lengths.h"
 #include "core/stages.h"
 #include "core/types.h"
 
 namespace lanewise {
 
+// Bounces are told apart up to this many; the last stands for all that follow.
+constexpr uint32_t kProfiledBounces = 16;
+
 struct StageCounter {
   uint64_t calls = 0;
-  uint64_t paths = 0;  // living, without padding
-  uint64_t lanes = 0;  // run, with padding
-  uint64_t nanoseconds = 0;
+  uint64_t paths = 0;        // living, without padding
+  uint64_t lanes = 0;        // run, with padding
+  uint64_t rays = 0;         // traced
+  uint64_t nanoseconds = 0;  // 0 if the clock is off: see ProfileDetail
+  QueueLengths lengths;      // paths of each call
+
+  void add(const StageCounter& other) {
+    calls += other.calls;
+    paths += other.paths;
+    lanes += other.lanes;
+    rays += other.rays;
+    nanoseconds += other.nanoseconds;
+    lengths.add(other.lengths);
+  }
 };
 
 struct Profile {
-  std::array<StageCounter, kStageCount> stages;
+  // [bounce][stage], as many bounces as there were. What runs once a wave, generate and accumulate, counts as bounce 0.
+  std::vector<std::array<StageCounter, kStageCount>> bounces;
+  uint64_t wave_nanoseconds = 0;  // in all stages and between them
   uint64_t samples = 0;
   uint64_t bounce_rays = 0;
   uint64_t shadow_rays = 0;
@@ -27,7 +45,28 @@ struct Profile {
 
   uint64_t rays() const { return samples + bounce_rays + shadow_rays; }
 
-  StageCounter& operator[](Stage stage) { return stages[static_cast<size_t>(stage)]; }
+  StageCounter& at(Stage stage, uint32_t bounce) {
+    bounce = std::min(bounce, kProfiledBounces - 1);
+    if (bounce >= bounces.size()) bounces.resize(bounce + 1);
+    return bounces[bounce][static_cast<size_t>(stage)];
+  }
+
+  // Over all bounces.
+  StageCounter total(Stage stage) const {
+    StageCounter sum;
+    for (const auto& stages : bounces) sum.add(stages[static_cast<size_t>(stage)]);
+    return sum;
+  }
+
+  // Rays that a stage has traced beside the calls that are counted for it. Camera rays are the samples.
+  void count_rays(Stage stage, uint32_t bounce, uint64_t rays) {
+    at(stage, bounce).rays += rays;
+    if (stage != Stage::kIntersect) {
+      shadow_rays += rays;
+    } else if (bounce > 0) {
+      bounce_rays += rays;
+    }
+  }
 
   void count_paths(size_t length, uint64_t paths) {
     if (paths == 0) return;
@@ -36,12 +75,11 @@ struct Profile {
   }
 
   void add(const Profile& other) {
-    for (int i = 0; i < kStageCount; ++i) {
-      stages[i].calls += other.stages[i].calls;
-      stages[i].paths += other.stages[i].paths;
-      stages[i].lanes += other.stages[i].lanes;
-      stages[i].nanoseconds += other.stages[i].nanoseconds;
+    if (bounces.size() < other.bounces.size()) bounces.resize(other.bounces.size());
+    for (size_t b = 0; b < other.bounces.size(); ++b) {
+      for (size_t i = 0; i < kStageCount; ++i) bounces[b][i].add(other.bounces[b][i]);
     }
+    wave_nanoseconds += other.wave_nanoseconds;
     samples += other.samples;
     bounce_rays += other.bounce_rays;
     shadow_rays += other.shadow_rays;

@@ -23,7 +23,7 @@ void run_batches(Wave& wave, const std::vector<uint32_t>& pixels, uint32_t first
 
 }  // namespace
 
-RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress) {
+RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress, ProfileDetail detail) {
   const auto start = std::chrono::steady_clock::now();
   const uint32_t threads = thread_count(plan.settings);
   std::vector<std::unique_ptr<Wave>> waves(threads);
@@ -31,18 +31,24 @@ RenderResult render(const Plan& plan, const std::function<void(const Progress&)>
                         uint32_t worker) {
     std::unique_ptr<Wave>& wave = waves[worker];
     if (!wave)
-      wave = std::make_unique<Wave>(plan, plan.settings.wave);  // by its own thread, so that its memory is near
-    const uint64_t before = wave->profile().rays();
+      wave = std::make_unique<Wave>(plan, plan.settings.wave, detail);  // by its own thread, so that its memory is near
+    const uint64_t before = wave->profiler().profile.rays();
     run_batches(*wave, pixels, first, count, sums);
-    return wave->profile().rays() - before;
+    return wave->profiler().profile.rays() - before;
   };
   Exposure exposure = expose(plan.settings, threads, draw, progress);
 
+  const auto elapsed = std::chrono::steady_clock::now() - start;
   std::vector<Profile> profiles;
+  std::vector<std::vector<LoggedCall>> logs;
   for (const std::unique_ptr<Wave>& wave : waves) {
-    if (wave) profiles.push_back(wave->profile());
+    if (!wave) continue;
+    profiles.push_back(wave->profiler().profile);
+    logs.push_back(wave->profiler().log());
   }
-  return make_result(std::move(exposure), profiles, std::chrono::steady_clock::now() - start);
+  RenderResult result = make_result(std::move(exposure), profiles, elapsed);
+  result.logs = std::move(logs);
+  return result;
 }
 
 }  // namespace lanewise

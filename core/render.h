@@ -8,6 +8,7 @@
 
 #include "core/image.h"
 #include "core/plan.h"
+#include "core/profiler.h"
 #include "core/settings.h"
 
 namespace lanewise {
@@ -17,7 +18,7 @@ struct StageStats {
   std::string name;
   uint64_t calls = 0;
   uint64_t paths = 0;     // paths handed to the stage, without padding
-  double seconds = 0;     // of thread time
+  double seconds = 0;     // of thread time; 0 if the clock is off
   double lanes_live = 0;  // share of the vector lanes that it ran which held a living path
 };
 
@@ -45,11 +46,14 @@ struct RenderResult {
   Image image;                    // of settings.window()
   std::vector<uint32_t> samples;  // per pixel of it
   RenderStats stats;
+  Profile profile;                            // what the statistics are made of, of all threads
+  std::vector<std::vector<LoggedCall>> logs;  // of each thread, by the time that calls ended
 };
 
 // Renders plan.settings. progress, if given, is called from this thread some ten times a second. The pixels depend on
 // the plan's scene, settings and seed alone: not on threads, wave or tile order.
-RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress = nullptr);
+RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress = nullptr,
+                    ProfileDetail detail = {});
 
 // The same picture by the scalar path tracer made of the twins: T is float or double.
 template <class T>

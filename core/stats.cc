@@ -17,7 +17,7 @@ RenderStats make_stats(const Profile& profile) {
   stats.invalid_samples = profile.invalid_samples;
   stats.paths_by_length = profile.paths_by_length;
   for (int i = 0; i < kStageCount; ++i) {
-    const StageCounter& c = profile.stages[static_cast<size_t>(i)];
+    const StageCounter c = profile.total(static_cast<Stage>(i));
     if (c.calls == 0) continue;
     stats.stages.push_back({kStageNames[i], c.calls, c.paths, static_cast<double>(c.nanoseconds) * 1e-9,
                             static_cast<double>(c.paths) / static_cast<double>(c.lanes)});
@@ -39,7 +39,7 @@ RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles
     all.add(profile);
     threads += profile.samples > 0;
   }
-  RenderResult result{std::move(exposure.image), std::move(exposure.samples), make_stats(all)};
+  RenderResult result{std::move(exposure.image), std::move(exposure.samples), make_stats(all), std::move(all), {}};
   const double drawn = std::accumulate(result.samples.begin(), result.samples.end(), 0.0);
   result.stats.samples_per_pixel = drawn / static_cast<double>(result.samples.size());
   result.stats.converged = exposure.converged;

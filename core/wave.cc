@@ -1,6 +1,5 @@
 #include "core/wave.h"
 
-#include <chrono>
 #include <utility>
 
 namespace lanewise {
@@ -48,28 +47,10 @@ Kernel* kernel_of(Stage stage) {
   return nullptr;
 }
 
-// Adds what happens in its lifetime to a stage's counter.
-class Timed {
- public:
-  Timed(StageCounter& counter, uint32_t lanes, uint32_t paths) : counter_(counter), start_(Clock::now()) {
-    counter_.calls += 1;
-    counter_.lanes += lanes;
-    counter_.paths += paths;
-  }
-  ~Timed() { counter_.nanoseconds += static_cast<uint64_t>((Clock::now() - start_).count()); }
-  Timed(const Timed&) = delete;
-  Timed& operator=(const Timed&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static_assert(std::is_same_v<Clock::period, std::nano>);
-  StageCounter& counter_;
-  Clock::time_point start_;
-};
-
 }  // namespace
 
 void Wave::run(const Batch& batch, PixelSums* film) {
+  const auto clocked = profiler_.wave(batch.paths);
   state_.batch = batch;
   state_.step = {};
   Range live{0, batch.paths};
@@ -79,12 +60,12 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   for (uint32_t bounce = 0; paths > 0; ++bounce) {
     state_.step.bounce = bounce;
     run(Stage::kIntersect, live, paths);
-    const Bins bins = sort(live);
-    if (bounce > 0) profile_.bounce_rays += bins.paths(0, kBinCount) - bins.dead;
+    const Bins bins = sort(live, paths);
+    profiler_.profile.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
     run(Stage::kEmission, bins[kEmitter]);
 
     run(Stage::kRetire, bins.span(kSurfaceBins, kBinCount), bins.paths(kSurfaceBins, kBinCount));
-    profile_.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
+    profiler_.profile.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
 
     live = bins.span(0, kSurfaceBins);
     paths = bins.paths(0, kSurfaceBins);
@@ -94,9 +75,10 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);
   }
 
-  const Timed timed(profile_[Stage::kAccumulate], round_up_to_lanes(batch.paths), batch.paths);
-  profile_.samples += batch.paths;
-  profile_.invalid_samples += accumulate(state_, film);
+  state_.step = {};
+  const auto call = count(Stage::kAccumulate, {0, batch.paths}, batch.paths);
+  profiler_.profile.samples += batch.paths;
+  profiler_.profile.invalid_samples += accumulate(state_, film);
 }
 
 // Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn.
@@ -115,20 +97,25 @@ void Wave::add_direct_light(const Bins& bins) {
       for (const ShadeStages& stages : plan_.shade_stages) {
         if (stages.light != Stage::kCount) run(stages.light, bins[stages.bin]);
       }
-      profile_.shadow_rays += count_shadow_rays(state_, rough);
-      run(hemisphere ? Stage::kGatherEmission : Stage::kOcclude, rough, paths);
+      const Stage trace = hemisphere ? Stage::kGatherEmission : Stage::kOcclude;
+      profiler_.profile.count_rays(trace, state_.step.bounce, count_shadow_rays(state_, rough));
+      run(trace, rough, paths);
     }
   }
 }
 
 void Wave::run(Stage stage, Range range, uint32_t paths) {
   if (paths == 0) return;
-  const Timed timed(profile_[stage], round_up_to_lanes(range.size()), paths);
+  const auto call = count(stage, range, paths);
   kernel_of(stage)(plan_, state_, range);
 }
 
-Bins Wave::sort(Range range) {
-  const Timed timed(profile_[Stage::kSort], round_up_to_lanes(range.size()), range.size());
+Profiler::Clocked Wave::count(Stage stage, Range range, uint32_t paths) {
+  return profiler_.call(stage, state_.step.bounce, paths, round_up_to_lanes(range.size()));
+}
+
+Bins Wave::sort(Range range, uint32_t paths) {
+  const auto call = count(Stage::kSort, range, paths);
   const Bins bins = sort_by_bin(state_, spare_, range);
   spare_.step = state_.step;
   spare_.batch = state_.batch;
@@ -136,12 +123,13 @@ Bins Wave::sort(Range range) {
   return bins;
 }
 
-Wave::Wave(const Plan& plan, uint32_t size)
+Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
     : plan_(plan),
       size_(size),
       buffers_{PathBuffer(size), PathBuffer(size)},
       state_(buffers_[0].state()),
-      spare_(buffers_[1].state()) {
+      spare_(buffers_[1].state()),
+      profiler_(detail) {
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;
   spare_.result_b = state_.result_b;

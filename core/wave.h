@@ -3,7 +3,7 @@
 
 #include "core/path_buffer.h"
 #include "core/plan.h"
-#include "core/profile.h"
+#include "core/profiler.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -11,19 +11,21 @@ namespace lanewise {
 class Wave {
  public:
   // size: the most paths in flight, a multiple of kLanes.
-  Wave(const Plan& plan, uint32_t size);
+  Wave(const Plan& plan, uint32_t size, ProfileDetail detail = {});
 
   // Computes the batch's samples (at most size() paths) and adds them to film[pixel].
   void run(const Batch& batch, PixelSums* film);
 
   uint32_t size() const { return size_; }
-  const Profile& profile() const { return profile_; }
+  const Profiler& profiler() const { return profiler_; }
 
  private:
   // Runs a stage's kernel on the range, which holds `paths` living paths, and counts it.
   void run(Stage stage, Range range, uint32_t paths);
   void run(Stage stage, Range range) { run(stage, range, range.size()); }
-  Bins sort(Range range);
+  Bins sort(Range range, uint32_t paths);
+  // Counts a call, and clocks it as long as what is returned lasts.
+  Profiler::Clocked count(Stage stage, Range range, uint32_t paths);
   void add_direct_light(const Bins& bins);
 
   const Plan& plan_;
@@ -31,7 +33,7 @@ class Wave {
   PathBuffer buffers_[2];
   PathState state_;  // where the paths are now
   PathState spare_;  // where the next sort moves them
-  Profile profile_;
+  Profiler profiler_;
 };
 
 }  // namespace lanewise

@@ -90,8 +90,9 @@ void apply_overrides(Scene& scene, const RenderOptions& o) {
   apply_normals(scene, o.normals);
 }
 
-RenderResult render_with(Reference reference, const Plan& plan, const std::function<void(const Progress&)>& progress) {
-  switch (reference) {
+RenderResult render_with(const RenderOptions& o, const Plan& plan,
+                         const std::function<void(const Progress&)>& progress) {
+  switch (o.reference) {
     case Reference::kFloat:
       return render_reference<float>(plan, progress);
     case Reference::kDouble:
@@ -99,7 +100,7 @@ RenderResult render_with(Reference reference, const Plan& plan, const std::funct
     case Reference::kNone:
       break;
   }
-  return render(plan, progress);
+  return render(plan, progress, {.clock = !o.stats.empty()});
 }
 
 std::string isa_name(Reference reference) {
@@ -126,8 +127,8 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   if (!o.camera_file.empty()) scene.cameras = {load_camera(o.camera_file)};
   progress.show("planning");
   const Plan plan = timed(seconds.plan, [&] { return make_plan(scene, o.settings); });
-  const RenderResult result = timed(
-      seconds.render, [&] { return render_with(o.reference, plan, [&](const Progress& p) { progress.show(p); }); });
+  const RenderResult result =
+      timed(seconds.render, [&] { return render_with(o, plan, [&](const Progress& p) { progress.show(p); }); });
 
   timed(seconds.write, [&] {
     write_image(o.output, result.image,
