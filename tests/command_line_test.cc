@@ -145,6 +145,8 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
       {{"--rate", "rate.txt"}, "rate.txt"},
       {{"--rate", "old.png"}, "--rate: would overwrite old.png"},
       {{"--rate", "rate.png", "--stats", "rate.png"}, "--stats: would overwrite rate.png"},
+      {{"--rate", "rate.png", "--stats", "./rate.png"}, "--stats: would overwrite rate.png"},
+      {{"-c", "old.png", "-f", "./old.png"}, "--output: would overwrite old.png"},
       {{"--seed", "-1"}, "--seed"},
       {{"--seed", "18446744073709551616"}, "--seed"},
       {{"--wave", "0"}, "--wave"},

@@ -1,9 +1,7 @@
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/file.h"
 #include "core/image_io.h"
@@ -11,10 +9,9 @@
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/types.h"
-#include "scenes/camera_file.h"
-#include "scenes/load.h"
+#include "tools/chosen_scene.h"
 #include "tools/commands.h"
-#include "tools/flags.h"
+#include "tools/output_files.h"
 #include "tools/progress.h"
 #include "tools/rate_picture.h"
 #include "tools/render_options.h"
@@ -40,54 +37,21 @@ auto timed(double& seconds, F f) {
   return result;
 }
 
-// What can be known to fail before the work begins. No output may overwrite the scene or another output.
+// What can be known to fail before the work begins.
 void check_outputs(const RenderOptions& o) {
   check_image_extension(o.output);
   check_image_writable(o.output);
-  std::vector<std::string> taken = {o.scene, o.output};
-  const auto claim = [&](const char* flag, const std::string& path) {
-    for (const std::string& other : taken) {
-      if (std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(other)) {
-        throw UsageError(std::string(flag) + ": would overwrite " + other);
-      }
-    }
-    taken.push_back(path);
-  };
+  OutputFiles files(o);
+  files.add("--output", o.output);
   if (!o.rate.empty()) {
     check_image_extension(o.rate);
     check_image_writable(o.rate);
-    claim("--rate", o.rate);
+    files.add("--rate", o.rate);
   }
   if (!o.stats.empty()) {
     check_writable(o.stats);
-    claim("--stats", o.stats);
+    files.add("--stats", o.stats);
   }
-}
-
-template <class F>
-void change_materials(Scene& scene, Material::Kind kind, const char* flag, const char* what, F change) {
-  bool any = false;
-  for (Material& material : scene.materials) {
-    if (material.kind != kind) continue;
-    change(material);
-    any = true;
-  }
-  if (!any) throw UsageError(std::string(flag) + ": " + scene.path + " has no " + what);
-}
-
-void apply_overrides(Scene& scene, const RenderOptions& o) {
-  constexpr auto kMicrofacet = Material::Kind::kMicrofacet;
-  if (o.metal) {
-    change_materials(scene, kMicrofacet, "--metal", "microfacet material", [&](Material& m) {
-      m.eta = o.metal->eta;
-      m.k = o.metal->k;
-    });
-  }
-  if (o.alpha) {
-    change_materials(scene, kMicrofacet, "--alpha", "microfacet material", [&](Material& m) { m.alpha = *o.alpha; });
-  }
-  if (o.ior) change_materials(scene, Material::Kind::kGlass, "--ior", "glass", [&](Material& m) { m.ior = *o.ior; });
-  apply_normals(scene, o.normals);
 }
 
 RenderResult render_with(const RenderOptions& o, const Plan& plan,
@@ -122,9 +86,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   RenderSeconds seconds;
   ProgressLine progress(o.quiet);
   progress.show("loading " + o.scene);
-  Scene scene = timed(seconds.load, [&] { return load_scene(o.scene); });
-  apply_overrides(scene, o);
-  if (!o.camera_file.empty()) scene.cameras = {load_camera(o.camera_file)};
+  const Scene scene = timed(seconds.load, [&] { return load_chosen_scene(o); });
   progress.show("planning");
   const Plan plan = timed(seconds.plan, [&] { return make_plan(scene, o.settings); });
   const RenderResult result =

@@ -132,6 +132,9 @@ void add_machine_flags(CLI::App& app, RenderOptions& o) {
       ->check(one_of(isas))
       ->type_name(join_names(isas))
       ->default_str("the best here");
+}
+
+void add_reference_flag(CLI::App& app, RenderOptions& o) {
   app.add_option_function<std::string>(
          "--reference",
          [&o](const std::string& type) { o.reference = type == "float" ? Reference::kFloat : Reference::kDouble; },
@@ -168,7 +171,7 @@ std::string default_output(const std::string& scene) {
 
 }  // namespace
 
-void add_render_options(CLI::App& app, RenderOptions& o) {
+void add_scene_options(CLI::App& app, RenderOptions& o) {
   app.option_defaults()->take_last();  // so that a flag can be appended to a command line to change it
   app.add_option("SCENE", o.scene, "COLLADA file (.dae), or a scene made by code: builtin:dense")
       ->required()
@@ -184,10 +187,16 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
   add_material_flags(app, o);
   group("Machine");
   add_machine_flags(app, o);
-  group("Output");
-  add_output_flags(app, o);
   group("Not yet supported");
   add_not_yet_flags(app);
+}
+
+void add_render_options(CLI::App& app, RenderOptions& o) {
+  add_scene_options(app, o);
+  app.option_defaults()->group("Machine");
+  add_reference_flag(app, o);
+  app.option_defaults()->group("Output");
+  add_output_flags(app, o);
 }
 
 void complete(RenderOptions& o, const CLI::App& app) {

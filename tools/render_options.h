@@ -1,4 +1,4 @@
-// The flags of `lanewise render`.
+// The flags of `lanewise render`, and those of them that other commands on scenes share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -37,7 +37,11 @@ struct RenderOptions {
   bool hemisphere = false;
 };
 
-// Adds every flag, and checks of each value by itself. Values go to `options`, which must live until the parse.
+// Adds the scene and the flags that say what is rendered and how, with checks of each value by itself. Values go to `options`,
+// which must live until the parse.
+void add_scene_options(CLI::App& app, RenderOptions& options);
+
+// The same, --reference, and the files that a render writes.
 void add_render_options(CLI::App& app, RenderOptions& options);
 
 // After the parse: what depends on several flags. Throws UsageError.

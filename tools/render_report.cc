@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "tools/text.h"
 #include "tools/version.h"
 
 namespace lanewise {
@@ -20,19 +21,6 @@ uint64_t peak_rss_bytes() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-// "842", "12.3 k", "4.56 M".
-std::string short_count(double n) {
-  const char* unit = "";
-  for (const char* larger : {" k", " M", " G", " T"}) {
-    if (n < 999.5) break;
-    n /= 1000;
-    unit = larger;
-  }
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g%s", n, unit);
-  return text;
 }
 
 // Three digits, and never "100" for less.

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "tools/commands.h"
 #include "tools/flags.h"
 #include "tools/progress.h"
+#include "tools/text.h"
 
 namespace lanewise {
 namespace {
@@ -97,15 +96,6 @@ std::vector<Row> rows_of(const std::vector<verify::FunctionError>& results) {
 nlohmann::ordered_json json_of(const Row& row) {
   return {{"kernel", row.kernel},   {"target", row.target}, {"field", row.field}, {"max_error", row.max},
           {"mean_error", row.mean}, {"unit", row.unit},     {"bound", row.bound}};
-}
-
-std::string print(const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
 }
 
 // The rows of all targets side by side; a kernel's name only in its first line.
