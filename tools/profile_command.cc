@@ -29,8 +29,9 @@ namespace lanewise {
 namespace {
 
 constexpr const char* kFooter =
-    "Times are thread time by the clock around each call of a stage. Every figure is the median of the runs; renders\n"
-    "with the clock and without it take turns, which shows what profiling costs.\n"
+    "Times are thread time by the clock around each call of a stage: of each stage and bounce the least of the runs,\n"
+    "which is the one least disturbed. Renders with the clock and without it take turns, to show what profiling "
+    "costs.\n"
     "--compare marks a stage as faster or slower where the medians differ by more than 2 % and the runs, by the rank\n"
     "test, would differ so in fewer than 1 of 100 comparisons of equals; that takes five runs on both sides.\n"
     "In place of the scene may stand a profile that --json has written: it is shown again, and nothing is rendered.\n\n"
@@ -61,7 +62,7 @@ bool is_saved_profile(const std::string& scene) { return scene.ends_with(".json"
 
 void add_profile_flags(CLI::App& app, ProfileOptions& o) {
   app.option_defaults()->group("Profiling");
-  app.add_option("--repeat", o.repeat, "Renders to take the median of")
+  app.add_option("--repeat", o.repeat, "Renders that are clocked")
       ->check(whole_number(1, 50))
       ->type_name("N")
       ->capture_default_str();

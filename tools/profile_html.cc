@@ -21,6 +21,7 @@ pre.summary { white-space: pre-wrap; overflow-wrap: anywhere; }
 .charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 370px), 1fr)); gap: 26px 24px; margin: 18px 0; }
 svg { width: 100%; max-width: 440px; display: block; }
 svg text { font: 11px system-ui, sans-serif; fill: #333; }
+.legend { position: sticky; top: 0; background: #fff; padding: 4px 0; }
 .legend span { display: inline-block; margin-right: 10px; white-space: nowrap; }
 .legend i { display: inline-block; width: 11px; height: 11px; border-radius: 6px; margin-right: 4px; }
 )";

@@ -34,6 +34,13 @@ Run run_once(const Plan& plan, bool clock) {
   return run;
 }
 
+double stage_seconds(const RenderStats& stats) {
+  double sum = 0;
+  for (const StageStats& stage : stats.stages) sum += stage.seconds;
+  return sum;
+}
+
+// That counting and clocking one call takes.
 double measure_call() {
   constexpr uint32_t kCalls = 20'000;
   Profiler profiler({.clock = true});
@@ -64,10 +71,10 @@ StageReport report_stage(Stage stage, const std::vector<Profile>& runs) {
   const auto i = static_cast<size_t>(stage);
   StageReport report{kStageNames[i], words(fields.reads), words(fields.writes), work_of(runs[0].total(stage)), {}, {}};
   for (size_t b = 0; b < runs[0].bounces.size(); ++b) {
-    std::vector<double> seconds;
-    for (const Profile& run : runs) seconds.push_back(seconds_of(run.bounces[b][i].nanoseconds));
     StageWork work = work_of(runs[0].bounces[b][i]);
-    work.seconds = median(seconds);
+    uint64_t nanoseconds = UINT64_MAX;
+    for (const Profile& run : runs) nanoseconds = std::min(nanoseconds, run.bounces[b][i].nanoseconds);
+    work.seconds = seconds_of(nanoseconds);
     work.bytes = bytes_of(stage, runs[0].bounces[b]);
     report.total.seconds += work.seconds;
     report.total.bytes += work.bytes;
@@ -116,7 +123,7 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
   run_once(plan, false);
 
   std::vector<Profile> profiles;
-  std::vector<double> wave_seconds;
+  std::vector<double> between, outside;
   for (uint32_t i = 0; i < options.repeat; ++i) {
     options.show(print("profiling  %u of %u", i + 1, options.repeat));
     for (const bool clock : {i % 2 == 0, i % 2 != 0}) {
@@ -125,7 +132,10 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
       (clock ? report.cpu_seconds : report.cpu_seconds_unclocked).push_back(run.cpu_seconds);
       if (!clock) continue;
       report.threads = std::max(report.threads, run.result.stats.threads);
-      wave_seconds.push_back(seconds_of(run.result.profile.wave_nanoseconds));
+      const double all = run.result.stats.threads * run.result.stats.seconds;
+      const double in_waves = seconds_of(run.result.profile.wave_nanoseconds);
+      between.push_back((in_waves - stage_seconds(run.result.stats)) / all);
+      outside.push_back(1 - in_waves / all);
       profiles.push_back(std::move(run.result.profile));
     }
   }
@@ -136,7 +146,8 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
   report.bounce_rays = profiles[0].bounce_rays;
   report.shadow_rays = profiles[0].shadow_rays;
   report.bounce_limit = kProfiledBounces;
-  report.wave_seconds = median(wave_seconds);
+  report.between_stages = median(between);
+  report.outside_waves = median(outside);
   report.call_seconds = measure_call();
   for (int i = 0; i < kStageCount; ++i) {
     StageReport stage = report_stage(static_cast<Stage>(i), profiles);

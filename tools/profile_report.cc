@@ -17,8 +17,7 @@ StageWork ProfileReport::bounce_total(size_t bounce) const {
 double ProfileReport::overhead_by_count() const {
   uint64_t calls = 0;
   for (const StageReport& stage : stages) calls += stage.total.calls;
-  const double overhead = static_cast<double>(calls) * call_seconds;
-  return wave_seconds > overhead ? overhead / (wave_seconds - overhead) : 0;
+  return share(static_cast<double>(calls) * call_seconds);
 }
 
 std::array<double, 3> ProfileReport::overhead_by_turns() const {

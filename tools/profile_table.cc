@@ -85,7 +85,6 @@ std::string profile_summary(const ProfileReport& r) {
   const double seconds = median(r.seconds), samples = static_cast<double>(r.samples);
   const double all = r.threads * seconds;
   const auto [low, middle, high] = r.overhead_by_turns();
-  const double stages = r.stage_seconds();
   std::string text = print("%s: %s samples, %s rays\n", r.scene.c_str(), short_count(samples).c_str(),
                            short_count(static_cast<double>(r.rays())).c_str());
   text += print("%s, %s, %u thread%s\n", r.cpu.c_str(), r.isa.c_str(), r.threads, r.threads == 1 ? "" : "s");
@@ -94,8 +93,7 @@ std::string profile_summary(const ProfileReport& r) {
                 short_count(static_cast<double>(r.rays()) / std::max(seconds, 1e-9)).c_str(),
                 1e9 * all / std::max(samples, 1.0));
   text += print("thread time: %.1f %% in stages, %.1f %% between them, %.1f %% outside of waves (film, waiting)\n",
-                100 * stages / std::max(all, 1e-9), 100 * (r.wave_seconds - stages) / std::max(all, 1e-9),
-                100 * (1 - r.wave_seconds / std::max(all, 1e-9)));
+                100 * (1 - r.between_stages - r.outside_waves), 100 * r.between_stages, 100 * r.outside_waves);
   text += print(
       "profiling: %.2f %% by the number of calls, %.0f ns each; measured by turns %+.1f %% (quartiles %+.1f, %+.1f)\n",
       100 * r.overhead_by_count(), 1e9 * r.call_seconds, 100 * middle, 100 * low, 100 * high);

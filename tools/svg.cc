@@ -116,7 +116,7 @@ std::string row_chart(const Axis& axis, const std::vector<ChartRow>& rows) {
   std::string svg = begin(bottom + kAxis, axis.title) + x_axis(x, axis, kLabels, bottom);
   double y = kTop;
   for (const ChartRow& row : rows) {
-    svg += text_at(kLabels - 6, y + 15, "end", row.name);
+    svg += text_at(kLabels - 9, y + 15, "end", row.name);
     double from = 0;
     for (const Bar& bar : row.bars) {
       svg += print("<rect x='%.2f' y='%.1f' width='%.2f' height='%.1f' fill='%s'>", x(from), y + 4,
