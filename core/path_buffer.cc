@@ -1,5 +1,8 @@
 #include "core/path_buffer.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace lanewise {
 namespace {
 
@@ -35,6 +38,28 @@ PathBuffer::PathBuffer(uint32_t capacity)
   state_.capacity = capacity_;
   const Path<float> dummy = dummy_path(capacity_);
   for (uint32_t i = 0; i < padded_; ++i) store_path(state_, i, dummy);
+}
+
+PathQueue::PathQueue(const PathState& wave) : buffer_(wave.capacity) {
+  buffer_.state().result_r = wave.result_r;
+  buffer_.state().result_g = wave.result_g;
+  buffer_.state().result_b = wave.result_b;
+}
+
+void PathQueue::append(const PathState& from, Range range) {
+  const PathState& to = buffer_.state();
+#define LANEWISE_APPEND(type, name, meaning) std::copy_n(from.name + range.begin, range.size(), to.name + size_);
+#define LANEWISE_IGNORE(type, name, meaning)
+  LANEWISE_PATH_FIELDS(LANEWISE_APPEND, LANEWISE_IGNORE)
+#undef LANEWISE_IGNORE
+#undef LANEWISE_APPEND
+  size_ += range.size();
+}
+
+Range PathQueue::take() {
+  const Path<float> dummy = dummy_path(buffer_.capacity());
+  for (uint32_t i = size_; i < round_up_to_lanes(size_); ++i) store_path(buffer_.state(), i, dummy);
+  return {0, std::exchange(size_, 0)};
 }
 
 }  // namespace lanewise

@@ -24,4 +24,22 @@ class PathBuffer {
   PathState state_;
 };
 
+// Paths set aside from a wave, bounce after bounce, until a kernel runs over them all: what are a few paths a bounce fill
+// whole vectors then.
+class PathQueue {
+ public:
+  // For as many paths as the wave's state holds; they retire to its results.
+  explicit PathQueue(const PathState& wave);
+
+  // Copies the KEPT fields of the range behind those that are there.
+  void append(const PathState& from, Range range);
+  // All of them, padded with dummy paths; the queue is empty then, but what state() holds stays until the next append.
+  Range take();
+  const PathState& state() const { return buffer_.state(); }
+
+ private:
+  PathBuffer buffer_;
+  uint32_t size_ = 0;
+};
+
 }  // namespace lanewise

@@ -34,7 +34,7 @@ struct StageCounter {
 };
 
 struct Profile {
-  // [bounce][stage], as many bounces as there were. What runs once a wave, generate and accumulate, counts as bounce 0.
+  // [bounce][stage], as many bounces as there were. What runs once a wave (generate, emission, accumulate) counts as bounce 0.
   std::vector<std::array<StageCounter, kStageCount>> bounces;
   uint64_t wave_nanoseconds = 0;  // in all stages and between them
   uint64_t samples = 0;

@@ -62,9 +62,8 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     run(Stage::kIntersect, live, paths);
     const Bins bins = sort(live, paths);
     profiler_.profile.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
-    run(Stage::kEmission, bins[kEmitter]);
-
-    run(Stage::kRetire, bins.span(kSurfaceBins, kBinCount), bins.paths(kSurfaceBins, kBinCount));
+    emitters_.append(state_, bins[kEmitter]);
+    run(Stage::kRetire, bins[kFinished]);
     profiler_.profile.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
 
     live = bins.span(0, kSurfaceBins);
@@ -75,7 +74,12 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);
   }
 
+  // Emission ends a path at whatever bounce: one full range of them costs less than a few at each.
   state_.step = {};
+  const Range met = emitters_.take();
+  run(Stage::kEmission, emitters_.state(), met, met.size());
+  run(Stage::kRetire, emitters_.state(), met, met.size());
+
   const auto call = count(Stage::kAccumulate, {0, batch.paths}, batch.paths);
   profiler_.profile.samples += batch.paths;
   profiler_.profile.invalid_samples += accumulate(state_, film);
@@ -104,10 +108,10 @@ void Wave::add_direct_light(const Bins& bins) {
   }
 }
 
-void Wave::run(Stage stage, Range range, uint32_t paths) {
+void Wave::run(Stage stage, const PathState& s, Range range, uint32_t paths) {
   if (paths == 0) return;
   const auto call = count(stage, range, paths);
-  kernel_of(stage)(plan_, state_, range);
+  kernel_of(stage)(plan_, s, range);
 }
 
 Profiler::Clocked Wave::count(Stage stage, Range range, uint32_t paths) {
@@ -129,6 +133,7 @@ Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
       buffers_{PathBuffer(size), PathBuffer(size)},
       state_(buffers_[0].state()),
       spare_(buffers_[1].state()),
+      emitters_(state_),
       profiler_(detail) {
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;

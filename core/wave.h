@@ -21,7 +21,8 @@ class Wave {
 
  private:
   // Runs a stage's kernel on the range, which holds `paths` living paths, and counts it.
-  void run(Stage stage, Range range, uint32_t paths);
+  void run(Stage stage, const PathState& s, Range range, uint32_t paths);
+  void run(Stage stage, Range range, uint32_t paths) { run(stage, state_, range, paths); }
   void run(Stage stage, Range range) { run(stage, range, range.size()); }
   Bins sort(Range range, uint32_t paths);
   // Counts a call, and clocks it as long as what is returned lasts.
@@ -31,8 +32,9 @@ class Wave {
   const Plan& plan_;
   uint32_t size_;
   PathBuffer buffers_[2];
-  PathState state_;  // where the paths are now
-  PathState spare_;  // where the next sort moves them
+  PathState state_;     // where the paths are now
+  PathState spare_;     // where the next sort moves them
+  PathQueue emitters_;  // the paths that have met one, of all bounces
   Profiler profiler_;
 };
 

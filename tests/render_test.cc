@@ -6,7 +6,9 @@
 #include <numeric>
 
 #include "core/image_compare.h"
+#include "scenes/load.h"
 #include "tests/kernel_harness.h"
+#include "tests/scene_paths.h"
 #include "core/verify/test_scene.h"
 
 namespace lanewise {
@@ -170,6 +172,16 @@ TEST_CASE("render: statistics add up") {
   // Every bounce but the last traces what the one before left; the dead among them are counted, not traced.
   CHECK(stats.camera_rays + stats.bounce_rays <= intersected);
   CHECK(stats.shadow_rays > 0);
+}
+
+TEST_CASE("render: every stage's lanes are 95% full where waves are, also those that few paths of a bounce come to") {
+  Settings settings;
+  settings.width = 64, settings.height = 48, settings.threads = 1;
+  const Plan plan = make_plan(load_scene(test::shipped_scene("cornell_spheres.dae").string()), settings);
+  for (const StageStats& s : render(plan).stats.stages) {
+    CAPTURE(s.name);
+    CHECK(s.lanes_live > 0.95);
+  }
 }
 
 TEST_CASE("render: -a takes fewer samples where the picture is calm") {
