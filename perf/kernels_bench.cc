@@ -1,102 +1,94 @@
-// Time per path of every kernel that shades, on every target, beside its float twin run on the same paths in AoS form.
-// Counter x_twin: how many times faster than the twin. Run it alone on the machine:
-//   build/kernels_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only
-#include <benchmark/benchmark.h>
-
+// Time per path of every kernel on every target, beside its float twin run on the same paths in AoS form. The paths are those
+// of a render of the test scene, 4096 a call. Every round starts from the same state; restoring it is not timed. After
+// timing, what the last round left is held to the kernel's bounds by its twin in double precision, and for kernels that only
+// move, count and sum paths compared with the twin's to the bit: the program ends with a message where that fails.
+// Run it alone on the machine:
+//   build/kernels_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
+#include <cstring>
 #include <map>
-#include <string>
+#include <utility>
 
-#include "core/path_buffer.h"
 #include "core/render.h"
-#include "kernels/kernels.h"
-#include "kernels/reference/emission.h"
-#include "kernels/reference/roulette.h"
-#include "kernels/reference/sample_light.h"
-#include "kernels/reference/shade_diffuse.h"
-#include "kernels/reference/shade_glass.h"
-#include "kernels/reference/shade_microfacet.h"
-#include "kernels/reference/shade_mirror.h"
-#include "kernels/reference/surface.h"
-#include "core/verify/random_path.h"
-#include "core/verify/test_scene.h"
+#include "core/verify/kernel_case.h"
+#include "core/verify/oracle.h"
+#include "perf/kernel_timing.h"
+#include "perf/recorded_paths.h"
 
 namespace lanewise {
 namespace {
 
-constexpr uint32_t kPaths = 4096;
+// Puts back the fields that a kernel writes: found by running it once.
+class Restorer {
+ public:
+  Restorer(const PathState& before, const PathState& after) {
+#define LANEWISE_ADD(type, name, meaning) \
+  if (std::memcmp(before.name, after.name, kBytes) != 0) fields_.emplace_back(after.name, before.name);
+    LANEWISE_PATH_FIELDS(LANEWISE_ADD, LANEWISE_ADD)
+#undef LANEWISE_ADD
+  }
+  void operator()() const {
+    for (const auto& [to, from] : fields_) std::memcpy(to, from, kBytes);
+  }
 
-struct Case {
-  const char* name;
-  Kernel* kernel;
-  void (*twin)(const Plan&, Path<float>&);
-  Bin bin;  // the material that the paths have hit
+ private:
+  static constexpr size_t kBytes = kPaths * sizeof(float);
+  std::vector<std::pair<void*, const void*>> fields_;
 };
 
-const Case kCases[] = {
-    {"surface", surface, reference::surface<float>, kDiffuse},
-    {"sample_light", sample_light, reference::sample_light<float>, kDiffuse},
-    {"light_diffuse", light_diffuse, reference::light_diffuse<float>, kDiffuse},
-    {"shade_diffuse", shade_diffuse, reference::shade_diffuse<float>, kDiffuse},
-    {"light_microfacet", light_microfacet, reference::light_microfacet<float>, kMicrofacet},
-    {"shade_microfacet", shade_microfacet, reference::shade_microfacet<float>, kMicrofacet},
-    {"shade_mirror", shade_mirror, reference::shade_mirror<float>, kMirror},
-    {"shade_glass", shade_glass, reference::shade_glass<float>, kGlass},
-    {"emission", emission, reference::emission<float>, kEmitter},
-    {"roulette", roulette, reference::roulette<float>, kDiffuse},
-};
-
-const Plan& plan() {
-  static const Plan instance = make_plan(test::test_scene(), {});
-  return instance;
-}
-
-std::vector<Path<float>> make_paths(Bin bin) {
-  std::mt19937 rng(1);
-  std::vector<Path<float>> paths(kPaths);
+void check(const std::string& name, const Plan& plan, const Paths& before, const PathState& after) {
+  const verify::Oracle oracle(plan, verify::kernel_case(name));
+  verify::Tally tally = oracle.tally();
   for (uint32_t i = 0; i < kPaths; ++i) {
-    do {
-      test::fill_random(plan(), rng, paths[i], i);
-    } while (paths[i].bin != bin);
-    paths[i].step.bounce = kRouletteBounce;
+    oracle.compare(before[i], oracle.expect(before[i]), load_path<float>(after, i), tally);
   }
-  return paths;
+  if (tally.failed > 0) fail(name, tally.first_failure);
+  if (!tally.choices_within_bound()) fail(name, std::to_string(tally.moved) + " choices fall otherwise");
 }
 
-double& twin_seconds(const std::string& name) {
-  static std::map<std::string, double> seconds;
-  return seconds[name];
-}
-
-// The throughput is reset in each round, in both forms, so that it does not shrink to subnormal numbers.
-void run_twin(benchmark::State& state, const Case& c) {
-  std::vector<Path<float>> paths = make_paths(c.bin);
-  for (auto _ : state) {
-    for (Path<float>& p : paths) {
-      p.beta_r = p.beta_g = p.beta_b = 1;
-      c.twin(plan(), p);
-    }
-    benchmark::ClobberMemory();
-  }
-  state.SetItemsProcessed(state.iterations() * kPaths);
-}
-
-void run_kernel(benchmark::State& state, const Case& c, const std::string& isa) {
+void time_kernel(benchmark::State& state, const StageTwin& c, const std::string& isa) {
+  const Plan& plan = plan_of(c.stage);
+  const Paths& paths = paths_of(c.stage);
+  const PathBuffer before = buffer_of(paths), buffer = buffer_of(paths);
+  const PathState& s = buffer.state();
   choose_isa(isa);
-  PathBuffer buffer(kPaths);
-  PathState& s = buffer.state();
-  const std::vector<Path<float>> paths = make_paths(c.bin);
-  for (uint32_t i = 0; i < kPaths; ++i) store_path(s, i, paths[i]);
-  s.step.bounce = kRouletteBounce;
+  c.kernel(plan, s, {0, kPaths});
+  const Restorer restore(before.state(), s);
+  time_rounds(state, restore, [&] { c.kernel(plan, s, {0, kPaths}); });
+  check(kStageNames[static_cast<size_t>(c.stage)], plan, paths, s);
+}
+
+// As in the scalar path tracer a twin finds its path in the first-level cache: it runs on blocks of paths that fit there.
+void time_twin(benchmark::State& state, const StageTwin& c) {
+  constexpr uint32_t kBlock = 64;
+  const Plan& plan = plan_of(c.stage);
+  const Paths& paths = paths_of(c.stage);
+  Path<float> block[kBlock];
   for (auto _ : state) {
-    for (float* beta : {s.beta_r, s.beta_g, s.beta_b}) std::fill_n(beta, kPaths, 1.0f);
-    c.kernel(plan(), s, {0, kPaths});
-    benchmark::ClobberMemory();
+    double seconds = 0;
+    for (auto first = paths.begin(); first != paths.end(); first += kBlock) {
+      std::copy_n(first, kBlock, block);
+      const auto start = Clock::now();
+      for (Path<float>& p : block) c.twin(plan, p);
+      benchmark::ClobberMemory();
+      seconds += seconds_since(start);
+    }
+    state.SetIterationTime(seconds);
   }
-  state.SetItemsProcessed(state.iterations() * kPaths);
-  choose_isa("");
+}
+
+// In the order of the data's flow.
+std::vector<Subject> all_subjects() {
+  std::vector<Subject> subjects = exact_subjects();
+  for (const StageTwin& c : stage_twins()) {
+    subjects.push_back({kStageNames[static_cast<size_t>(c.stage)],
+                        [&c](benchmark::State& state, const std::string& isa) { time_kernel(state, c, isa); },
+                        [&c](benchmark::State& state) { time_twin(state, c); }});
+  }
+  const auto place = [](const Subject& s) { return std::ranges::find(kStageNames, s.name) - std::begin(kStageNames); };
+  std::ranges::stable_sort(subjects, {}, place);
+  return subjects;
 }
 
 // Prints ns per path and, for kernels, how many times faster than the twin that ran before.
@@ -108,17 +100,20 @@ class Reporter : public benchmark::ConsoleReporter {
       const std::string full = run.run_name.function_name;
       const std::string kernel = full.substr(0, full.find('/')), variant = full.substr(full.find('/') + 1);
       const double seconds = run.GetAdjustedRealTime() / benchmark::GetTimeUnitMultiplier(run.time_unit) / kPaths;
-      if (variant == "twin") twin_seconds(kernel) = seconds;
+      if (variant == "twin") twin_seconds_[kernel] = seconds;
       char line[128];
       std::snprintf(line, sizeof line, "%-18s %-8s %8.2f ns/path", kernel.c_str(), variant.c_str(), 1e9 * seconds);
       GetOutputStream() << line;
       if (variant != "twin") {
-        std::snprintf(line, sizeof line, "  %5.1f x the twin", twin_seconds(kernel) / seconds);
+        std::snprintf(line, sizeof line, "  %5.1f x the twin", twin_seconds_[kernel] / seconds);
         GetOutputStream() << line;
       }
       GetOutputStream() << "\n";
     }
   }
+
+ private:
+  std::map<std::string, double> twin_seconds_;
 };
 
 }  // namespace
@@ -126,14 +121,17 @@ class Reporter : public benchmark::ConsoleReporter {
 
 int main(int argc, char** argv) {
   using namespace lanewise;
-  for (const Case& c : kCases) {
-    const std::string name = c.name;
-    benchmark::RegisterBenchmark((name + "/twin").c_str(), [&c](benchmark::State& s) { run_twin(s, c); });
+  const std::vector<Subject> subjects = all_subjects();
+  for (const Subject& subject : subjects) {
+    benchmark::RegisterBenchmark((subject.name + "/twin").c_str(), subject.time_twin)->UseManualTime();
     for (const std::string& isa : supported_isas()) {
-      benchmark::RegisterBenchmark((name + "/" + isa).c_str(),
-                                   [&c, isa](benchmark::State& s) { run_kernel(s, c, isa); });
+      benchmark::RegisterBenchmark((subject.name + "/" + isa).c_str(), [&subject, isa](benchmark::State& state) {
+        subject.time_kernel(state, isa);
+        choose_isa("");
+      })->UseManualTime();
     }
   }
+  benchmark::AddCustomContext("paths", std::to_string(kPaths));
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   Reporter reporter;
