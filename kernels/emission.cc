@@ -1,5 +1,7 @@
 #include "kernels/kernels.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/emission.cc"
 #include "hwy/foreach_target.h"
@@ -18,6 +20,7 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
   const VF zero = hn::Zero(d), one = Splat(1.0f);
   const VF light_samples = Splat(static_cast<float>(plan.settings.light_samples));
   const Direct direct = plan.settings.direct;
+  const bool spheres = std::ranges::any_of(plan.lights, [](const PlanLight& light) { return light.patches == 0; });
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const VI prim = hn::BitCast(di, hn::Load(DU(), s.prim + i));
     const Vec3 dir = LoadVec3(s.d_x, s.d_y, s.d_z, i);
@@ -25,7 +28,7 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
     Vec3 n;
     VF size;
     LaneRecords(plan.prim_shape.data(), 4, s.prim + i).Get4(0, n.x, n.y, n.z, size);
-    if (plan.spheres > 0) {
+    if (spheres) {
       const MF is_sphere = hn::RebindMask(d, hn::Gt(prim, hn::Set(di, static_cast<int32_t>(plan.triangles) - 1)));
       const Vec3 hit = MulAdd(t, dir, LoadVec3(s.o_x, s.o_y, s.o_z, i));
       n = IfThenElse(is_sphere, Normalize(Sub(hit, n)), n);

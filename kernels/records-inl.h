@@ -50,9 +50,11 @@ struct LaneRecords {
   }
 
   HWY_INLINE VF Get(size_t member) const {
-    HWY_ALIGN float values[hn::MaxLanes(DF())];
-    for (size_t k = 0; k < hn::Lanes(DF()); ++k) values[k] = lane[k][member];
-    return hn::Load(DF(), values);
+#if HWY_TARGET == HWY_SCALAR
+    return hn::Set(DF(), lane[0][member]);
+#else
+    return Single(DF(), member, 0);
+#endif
   }
 
 #if HWY_TARGET != HWY_SCALAR
@@ -67,6 +69,19 @@ struct LaneRecords {
     } else {
       const hn::Half<D> half;
       return hn::Combine(d, Row(half, first, k + hn::MaxLanes(half)), Row(half, first, k));
+    }
+  }
+
+  // One float of each of the records lane, lane + 1, ...
+  template <class D>
+  HWY_INLINE hn::Vec<D> Single(D d, size_t member, size_t k) const {
+    if constexpr (hn::MaxLanes(D()) == 4) {
+      const float *a = lane[k], *b = lane[k + 1], *c = lane[k + 2], *e = lane[k + 3];
+      return hn::ConcatUpperLower(d, hn::OddEven(hn::Set(d, e[member]), hn::Set(d, c[member])),
+                                  hn::OddEven(hn::Set(d, b[member]), hn::Set(d, a[member])));
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, Single(half, member, k + hn::MaxLanes(half)), Single(half, member, k));
     }
   }
 #endif

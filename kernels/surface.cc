@@ -43,10 +43,9 @@ void Surface(const Plan& plan, const PathState& s, Range range) {
     // The distance's error is along the ray; what is left across the surface is taken back along the normal.
     Vec3 n = shape, p = MulAdd(hn::Sub(size, Dot(shape, hit)), shape, hit);
     VI triangle = prim;
-    MF is_sphere = hn::Lt(size, size);
-    if (plan.spheres > 0) {
-      const auto beyond = hn::Gt(prim, hn::Set(di, last_triangle));
-      is_sphere = hn::RebindMask(d, beyond);
+    const auto beyond = hn::Gt(prim, hn::Set(di, last_triangle));
+    const MF is_sphere = hn::RebindMask(d, beyond);
+    if (!hn::AllFalse(di, beyond)) {  // a vector of one bin seldom has both
       const Vec3 out = Sub(hit, shape);
       const VF length2 = Dot(out, out);
       // Of a hit that rounding puts into the very center any normal is right.
