@@ -11,9 +11,7 @@ the rule leaves in the mean of the picture. Writes perf/results/adaptive_bias.{j
 import argparse
 import json
 import math
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import matplotlib
@@ -22,8 +20,9 @@ matplotlib.use('svg')
 import matplotlib.pyplot as plt
 import numpy as np
 
-ROOT = Path(__file__).resolve().parent.parent
-RESULTS = ROOT / 'perf/results'
+import lanewise
+from lanewise import RESULTS
+
 TARGETS = [0.4, 0.2, 0.1, 0.05]  # standard error of a pixel, relative; -a takes 1.96 times that as its tolerance
 RULES = {
     '-a 16': lambda x: ['-a', '16', f'{1.96 * x:.4g}', '-s', '65536'],
@@ -32,32 +31,20 @@ RULES = {
 }
 
 
-def luminance(path):
-    with open(path, 'rb') as f:
-        assert f.readline() == b'PF\n'
-        width, height = map(int, f.readline().split())
-        assert f.readline() == b'-1.0\n'
-        rgb = np.frombuffer(f.read(), '<f4').reshape(height * width, 3)
-    return rgb.astype(float) @ [0.2126, 0.7152, 0.0722]
-
-
-def render(scene, flags, seed, folder):
+def render(scene, flags, seed):
     """Mean luminance of the picture, and samples per pixel."""
-    picture, stats = folder / 'picture.pfm', folder / 'stats.json'
-    command = [ROOT / 'build/lanewise', 'render', scene, '--view', 'fit', '-r', '96', '72', '--seed', str(seed), '-q',
-               '-f', picture, '--stats', stats, *flags]
-    subprocess.run(command, check=True)
-    y = luminance(picture)
-    return y.mean(), json.loads(stats.read_text())['samples'] / y.size
+    picture, stats = lanewise.render(scene, '--view', 'fit', '-r', '96', '72', '--seed', str(seed), *flags)
+    y = picture.astype(float) @ [0.2126, 0.7152, 0.0722]
+    return y.mean(), stats['samples'] / y.size
 
 
-def measure(scene, renders, reference_spp, folder):
-    parts = [render(scene, ['-s', str(reference_spp // 8)], 10**6 + k, folder)[0] for k in range(8)]
+def measure(scene, renders, reference_spp):
+    parts = [render(scene, ['-s', str(reference_spp // 8)], 10**6 + k)[0] for k in range(8)]
     reference, reference_se = np.mean(parts), np.std(parts, ddof=1) / math.sqrt(len(parts))
     rows = []
     for rule, flags in RULES.items():
         for target in TARGETS:
-            runs = [render(scene, flags(target), seed, folder) for seed in range(1, renders + 1)]
+            runs = [render(scene, flags(target), seed) for seed in range(1, renders + 1)]
             means = np.array([mean for mean, _ in runs])
             se = means.std(ddof=1)
             rows.append({
@@ -118,7 +105,7 @@ def main():
     parser.add_argument('--renders', type=int, default=64, help='independent renders for each point')
     parser.add_argument('--reference-spp', type=int, default=131072)
     parser.add_argument('--scenes', nargs='+', type=Path,
-                        default=[ROOT / 'scenes/cornell_spheres.dae', ROOT / 'scenes/cornell_metal.dae'])
+                        default=lanewise.SHIPPED)
     parser.add_argument('--redraw', action='store_true', help='draw from perf/results/adaptive_bias.json')
     args = parser.parse_args()
     command = ' '.join(['perf/adaptive_bias.py', *sys.argv[1:]])
@@ -127,12 +114,7 @@ def main():
         saved = json.loads(data.read_text())
         rows, command = saved['rows'], saved['command']
     else:
-        if not (ROOT / 'build/lanewise').exists():
-            sys.exit('perf/adaptive_bias.py: build/lanewise is missing: run tools/build')
-        rows = []
-        with tempfile.TemporaryDirectory() as folder:
-            for scene in args.scenes:
-                rows += measure(scene, args.renders, args.reference_spp, Path(folder))
+        rows = [row for scene in args.scenes for row in measure(scene, args.renders, args.reference_spp)]
     RESULTS.mkdir(exist_ok=True)
     data.write_text(json.dumps({'command': command, 'rows': rows}, indent=1) + '\n')
     (RESULTS / 'adaptive_bias.md').write_text(table(rows, command))

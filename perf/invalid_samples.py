@@ -7,26 +7,18 @@
 Smooth normals, the harder ones. Exits with 0 if every sample is valid.
 """
 import argparse
-import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-PROGRAM = ROOT / 'build' / 'lanewise'
+import lanewise
+
 DEPTHS = [0, 1, 2, 3, 4, 5, 100]  # the deepest are counted first: their paths hold the others'
 SAMPLES = 1024
 
 
 def statistics(scene, depth, samples, threads):
-    with tempfile.TemporaryDirectory() as folder:
-        stats = pathlib.Path(folder) / 'stats.json'
-        flags = {'--view': 'fit', '--normals': 'smooth', '-s': samples, '-m': depth, '-t': threads,
-                 '-f': f'{folder}/picture.pfm', '--stats': stats}
-        command = [PROGRAM, 'render', scene, *(word for flag in flags.items() for word in flag)]
-        subprocess.run([str(word) for word in command], check=True, capture_output=True)
-        return json.loads(stats.read_text())
+    flags = {'--view': 'fit', '--normals': 'smooth', '-s': samples, '-m': depth, '-t': threads}
+    return lanewise.render(scene, *(word for flag in flags.items() for word in flag))[1]
 
 
 def page(rows, samples, command):
@@ -51,7 +43,7 @@ def page(rows, samples, command):
 
 def main():
     parser = argparse.ArgumentParser(description='Counts invalid samples over the course scenes.')
-    parser.add_argument('--scenes', type=pathlib.Path, default=ROOT.parent / 'shared' / 'scenes',
+    parser.add_argument('--scenes', type=pathlib.Path, default=lanewise.COURSE,
                         help='folder of the course scenes')
     parser.add_argument('-s', '--samples', type=int, default=SAMPLES, help='a pixel')
     parser.add_argument('-t', '--threads', type=int, default=0)
@@ -66,7 +58,7 @@ def main():
             print(scene.stem, depth, rows[scene.stem][depth]['invalid_samples'], flush=True)
             text, invalid = page(rows, arguments.samples, ' '.join(['perf/invalid_samples.py', *sys.argv[1:]]))
             if arguments.samples == SAMPLES:  # every time: a run that is cut short says how far it came
-                (ROOT / 'perf' / 'results' / 'invalid_samples.md').write_text(text)
+                (lanewise.RESULTS / 'invalid_samples.md').write_text(text)
     print(text)
     return 0 if invalid == 0 else 1
 

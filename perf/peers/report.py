@@ -4,11 +4,11 @@ import json
 
 import numpy as np
 
-import render_lanewise
+import lanewise
 import render_mitsuba
 import welch
 
-FOLDER = render_lanewise.ROOT / 'perf' / 'results'
+FOLDER = lanewise.RESULTS
 
 
 def print_and_write(name, text, data=None):
@@ -27,8 +27,8 @@ def comparison_page(rows, command, samples):
     largest = max((abs(d), e) for *_, c in rows for d, e in zip(c.difference, c.error))
     lines = [
         '# Lanewise beside Mitsuba 3: the same pictures?', '',
-        f'Lanewise {render_lanewise.version()}, Mitsuba {render_mitsuba.mitsuba_version()} {render_mitsuba.VARIANT}; '
-        f'{render_lanewise.processor()}. {samples}', '',
+        f'Lanewise {lanewise.version()}, Mitsuba {render_mitsuba.mitsuba_version()} {render_mitsuba.VARIANT}; '
+        f'{lanewise.processor()}. {samples}', '',
         f'    {command}', '',
         f'**{"All pictures agree." if agree else "Not all pictures pass."}** Of {len(rows)} pictures '
         f'{passed["pixels"]} pass the test of pixels, {passed["shares"]} that of shares, {passed["blocks"]} that of '
@@ -45,8 +45,8 @@ def comparison_page(rows, command, samples):
         faults = [test for test, good in c.verdicts.items() if not good]
         lines.append(f'| {scene} | {normals} | {depth} | {100 * min(c.pixels):.2f} | {100 * c.low_p:.2f} | '
                      f'{c.worst_block:.2g} | {means} | {", ".join(faults) or "ok"} |')
-    data = {'lanewise': render_lanewise.version(), 'mitsuba': render_mitsuba.mitsuba_version(),
-            'processor': render_lanewise.processor(), 'command': command, 'samples': samples,
+    data = {'lanewise': lanewise.version(), 'mitsuba': render_mitsuba.mitsuba_version(),
+            'processor': lanewise.processor(), 'command': command, 'samples': samples,
             'pictures': [{'scene': scene, 'normals': normals, 'depth': depth, **dataclasses.asdict(c),
                           'verdicts': c.verdicts} for scene, normals, depth, c in rows]}
     return '\n'.join(lines) + '\n', data

@@ -34,15 +34,15 @@ if pathlib.Path(sys.prefix).resolve() != VENV.resolve():
 
 import numpy as np  # noqa: E402
 
+sys.path.append(str(ROOT / 'perf'))
 import collada  # noqa: E402
-import render_lanewise  # noqa: E402
+import lanewise  # noqa: E402
 import render_mitsuba  # noqa: E402
 import report  # noqa: E402
 import welch  # noqa: E402
 
 WIDTH, HEIGHT = 120, 90
 DEPTHS = [0, 1, 2, 3, 4, 5, 100]
-SHIPPED = ['cornell_metal', 'cornell_spheres']  # and not furnace.dae, whose answer is in its first comment
 ROUND = 4  # seeds
 MORE = 5  # times the samples, for Lanewise's means and blocks
 
@@ -61,11 +61,11 @@ class Subject:
         self.path, self.normals, self.threads = path, normals, threads
         self.label = normals
         self.scene = collada.Scene(path)
-        self.camera = self.scene.camera('file' if path.stem in SHIPPED else 'fit')
+        self.camera = self.scene.camera('file' if path in lanewise.SHIPPED else 'fit')
         self.loaded = None
 
     def lanewise(self, depth, samples, seed, normals=None):
-        picture, stats = render_lanewise.render(
+        picture, stats = lanewise.render(
             self.path, '-r', str(WIDTH), str(HEIGHT), '-s', str(samples), '-m', str(depth), '--seed', str(seed),
             '--normals', normals or self.normals, '-t', str(self.threads), camera=self.camera)
         if stats['invalid_samples']:
@@ -103,8 +103,8 @@ class Store:
     def __init__(self):
         self.folder = ROOT / 'build-peers' / 'renders'
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.versions = {'mitsuba': render_mitsuba.mitsuba_version(), 'lanewise': digest(render_lanewise.PROGRAM),
-                         'more': digest(render_lanewise.PROGRAM)}
+        self.versions = {'mitsuba': render_mitsuba.mitsuba_version(), 'lanewise': digest(lanewise.PROGRAM),
+                         'more': digest(lanewise.PROGRAM)}
 
     def path(self, kind, subject, depth, samples, index):
         return self.folder / '-'.join([kind, self.versions[kind], subject.path.stem, digest(subject.path),
@@ -204,7 +204,7 @@ def subjects(paths, threads):
 
 def main():
     parser = argparse.ArgumentParser(description='Compares Lanewise with Mitsuba 3 by tests of equal means.')
-    parser.add_argument('--scenes', type=pathlib.Path, default=ROOT.parent / 'shared' / 'scenes',
+    parser.add_argument('--scenes', type=pathlib.Path, default=lanewise.COURSE,
                         help='folder of the course scenes')
     parser.add_argument('--rounds', type=int, default=4, help=f'of {ROUND} seeds')
     parser.add_argument('--share', type=float, default=1, help='of the samples under each seed')
@@ -214,9 +214,9 @@ def main():
     parser.add_argument('--validate', action='store_true', help='the tests themselves, on pictures rendered before')
     arguments = parser.parse_args()
 
-    if not render_lanewise.PROGRAM.exists():
+    if not lanewise.PROGRAM.exists():
         raise SystemExit('build/lanewise is not there: tools/build')
-    shipped = [ROOT / 'scenes' / f'{name}.dae' for name in SHIPPED]
+    shipped = lanewise.SHIPPED
     course = sorted(arguments.scenes.glob('*.dae'))
     depths = DEPTHS
     if arguments.quick:

@@ -1,25 +1,33 @@
-"""Lanewise from its command line, for the scripts that compare and count."""
+"""Lanewise from its command line, for the scripts that measure, compare and count."""
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = ROOT / 'build' / 'lanewise'
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+BUILD = ROOT / 'build'
+PROGRAM = BUILD / 'lanewise'
+RESULTS = ROOT / 'perf' / 'results'
+# Not furnace.dae, whose answer is in its first comment.
+SHIPPED = [ROOT / 'scenes' / f'{name}.dae' for name in ('cornell_spheres', 'cornell_metal')]
+COURSE = ROOT.parent / 'shared' / 'scenes'  # the course's scenes, which do not come with the project
 
 
 def render(scene, *flags, camera=None):
     """The picture (height, width, 3), row 0 at the top, and the run's statistics. camera: a collada.Camera."""
     with tempfile.TemporaryDirectory() as folder:
         picture, stats, view = (pathlib.Path(folder) / name for name in ('picture.pfm', 'stats.json', 'camera.json'))
-        command = [PROGRAM, 'render', scene, '-f', picture, '--stats', stats, *flags]
+        command = [PROGRAM, 'render', scene, '-q', '-f', picture, '--stats', stats, *flags]
         if camera:
             view.write_text(json.dumps({
                 'eye': camera.eye.tolist(), 'target': camera.target.tolist(),
                 'xfov': float(2 * np.degrees(np.arctan(camera.tan_x))), 'aspect': camera.tan_x / camera.tan_y}))
             command += ['-c', view]
+        if not PROGRAM.exists():
+            raise SystemExit(f'{PROGRAM} is not there: tools/build')
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise SystemExit(f'{" ".join(map(str, command))}: {done.stderr}')
@@ -41,7 +49,18 @@ def version():
 
 
 def processor():
+    fields = _first_processor()
+    return f"{fields['model name']} (family {fields['cpu family']}, model {fields['model']})"
+
+
+def machine():
+    """What a speed may be compared with: family and cores, no more."""
+    fields = _first_processor()
+    maker = {'AuthenticAMD': 'AMD', 'GenuineIntel': 'Intel'}.get(fields['vendor_id'], fields['vendor_id'])
+    return f"{maker} family {fields['cpu family']} model {fields['model']}, {os.cpu_count()} cores"
+
+
+def _first_processor():
     with open('/proc/cpuinfo', encoding='utf-8') as info:
         fields = dict(line.split(':', 1) for line in info.read().split('\n\n')[0].splitlines() if ':' in line)
-    fields = {key.strip(): value.strip() for key, value in fields.items()}
-    return f"{fields['model name']} (family {fields['cpu family']}, model {fields['model']})"
+    return {key.strip(): value.strip() for key, value in fields.items()}
