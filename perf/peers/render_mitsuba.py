@@ -26,12 +26,12 @@ def mitsuba_version():
 class MitsubaScene:
     """A collada.Scene, loaded once for renders of many depths and seeds."""
 
-    def __init__(self, scene, camera, normals, width, height, threads):
+    def __init__(self, scene, camera, normals, width, height, threads, variant=VARIANT, sampler=SAMPLER):
         import drjit
         import mitsuba
-        mitsuba.set_variant(VARIANT)
+        mitsuba.set_variant(variant)
         drjit.set_thread_count(threads)
-        self.mi = mitsuba
+        self.mi, self.sampler = mitsuba, sampler
         self.camera, self.width, self.height = camera, width, height
         self.scene = mitsuba.load_dict({'type': 'scene', **{
             f'shape{i}': self._shape(s, normals == 'smooth') for i, s in enumerate(scene.shapes)}})
@@ -50,8 +50,8 @@ class MitsubaScene:
                                                        up=[0, 0, 1])
         return self.mi.load_dict({
             'type': 'perspective', 'fov': float(2 * np.degrees(np.arctan(camera.tan_y))), 'fov_axis': 'y',
-            'near_clip': 1e-3, 'far_clip': 1e4, 'to_world': to_world, 
-            'sampler': {'type': SAMPLER, 'sample_count': samples},
+            'near_clip': 1e-3, 'far_clip': 1e4, 'to_world': to_world,
+            'sampler': {'type': self.sampler, 'sample_count': samples},
             'film': {'type': 'hdrfilm', 'width': self.width, 'height': self.height, 'rfilter': {'type': 'box'},
                      'component_format': 'float32', 'pixel_format': 'rgb'}})
 
