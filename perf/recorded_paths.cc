@@ -1,5 +1,6 @@
 #include "perf/recorded_paths.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -94,7 +95,10 @@ std::vector<Path<float>> record_paths(const Plan& plan, Stage stage, uint32_t co
         p.pixel = pixel, p.sample = sample, p.slot = static_cast<uint32_t>(paths.size());
         if (!trace_to(plan, stage, bounce, p)) continue;
         paths.push_back(p);
-        if (paths.size() == count) return paths;
+        if (paths.size() < count) continue;
+        if (stage != Stage::kGenerate && stage != Stage::kIntersect)
+          std::ranges::stable_sort(paths, {}, &Path<float>::bin);
+        return paths;
       }
     }
   }

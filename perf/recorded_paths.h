@@ -1,5 +1,4 @@
-// The paths that a kernel meets while a scene is rendered, recorded on the scalar path tracer's way: real rays, real hits, in
-// the order of the picture's pixels.
+// The paths that a kernel meets while a scene is rendered, recorded on the scalar path tracer's way: real rays, real hits.
 #pragma once
 
 #include <span>
@@ -20,8 +19,9 @@ struct StageTwin {
 };
 std::span<const StageTwin> stage_twins();
 
-// `count` paths as they come to the stage: at the first bounce (roulette: where it begins), for generate with nothing but
-// pixel, sample and slot. They hold what the stages before leave, also the LOCAL fields. The plan must have such paths.
+// `count` paths as they come to the stage: at the first bounce (roulette: where it begins), in the order of the picture's
+// pixels, after intersect sorted by bin. For generate they have nothing but pixel, sample and slot; else what the stages before
+// leave, also the LOCAL fields. The plan must have such paths.
 std::vector<Path<float>> record_paths(const Plan& plan, Stage stage, uint32_t count);
 
 }  // namespace lanewise
