@@ -127,7 +127,8 @@ class Flight {
     landed_[free] = slot;
     free += end;
     const char* address = base_[leaf] + leaf_block(child) * size_[leaf];
-    for (size_t b = 0; b < std::min(sizeof(BvhNode), sizeof(Block)); b += 64) hwy::Prefetch(address + b);
+    HWY_UNROLL(4)
+    for (size_t line = 0; line < 4; ++line) hwy::Prefetch(address + 64 * line);
   }
 
   // A step is taken in two halves, each short enough for the processor to have several rays' at work at once.
