@@ -45,8 +45,9 @@ struct Bvh {
 constexpr uint32_t kMaxBvhDepth = 32;
 constexpr uint32_t kBvhStackSize = 7 * kMaxBvhDepth + 8;
 
-// Builds by binned SAH (Wald 2007) over centroids, then collapses the binary tree to 8 wide (Wald, Benthin & Boulos
-// 2008). The boxes must be finite with lo <= hi. Deterministic: a function of the boxes alone.
+// Builds a binary tree by SAH with bins (Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007),
+// of which it then makes the wide one of least cost (Ylitie et al. 2017, sec. 3.2), by all threads. The boxes must be
+// finite with lo <= hi, and less than 2^29. Deterministic: a function of the boxes alone.
 Bvh build_bvh(std::span<const Box> boxes);
 
 }  // namespace lanewise

@@ -154,7 +154,7 @@ TEST_CASE("bvh: degenerate boxes") {
 }
 
 TEST_CASE("bvh: the same tree whatever the number of threads") {
-  const std::vector<Box> boxes = random_boxes(50000, 1, 0.02f);
+  const std::vector<Box> boxes = random_boxes(150000, 1, 0.02f);
   const Bvh many = build_bvh(boxes);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Bvh few = build_bvh(boxes);
