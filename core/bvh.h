@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/types.h"
@@ -47,7 +46,7 @@ constexpr uint32_t kBvhStackSize = 7 * kMaxBvhDepth + 8;
 
 // Builds a binary tree by SAH with bins (Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007),
 // of which it then makes the wide one of least cost (Ylitie et al. 2017, sec. 3.2), by all threads. The boxes must be
-// finite with lo <= hi, and less than 2^29. Deterministic: a function of the boxes alone.
-Bvh build_bvh(std::span<const Box> boxes);
+// finite with lo <= hi, and less than 2^29; their memory is given back early. Deterministic: a function of the boxes alone.
+Bvh build_bvh(std::vector<Box> boxes);
 
 }  // namespace lanewise

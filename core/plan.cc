@@ -53,7 +53,9 @@ PlanMaterial compile(const Material& m) {
 
 class Planner {
  public:
-  Planner(const Scene& scene, const Settings& settings) : scene_(scene), box_(bounds(scene)) {
+  // expendable: the scene again if its meshes may be emptied, or null.
+  Planner(const Scene& scene, Scene* expendable, const Settings& settings)
+      : scene_(scene), expendable_(expendable), box_(bounds(scene)) {
     plan_.settings = settings;
     for (int k = 0; k < 3; ++k) plan_.center[k] = box_.center()[k];
   }
@@ -132,6 +134,7 @@ class Planner {
     if (scene_.triangle_count() + scene_.spheres.size() >= size_t{1} << 29) {
       throw Error(scene_.path + ": more than 2^29 primitives");
     }
+    reserve();
     bool any_smooth = false;
     for (size_t m = 0; m < scene_.meshes.size(); ++m) {
       const Mesh& mesh = scene_.meshes[m];
@@ -140,11 +143,10 @@ class Planner {
       for (size_t t = 0; t < mesh.triangles.size(); ++t) smooth |= add_triangle(mesh, t);
       any_smooth |= smooth;
       const std::span<const FlatTriangle> added = std::span(corners_).subspan(first);
-      if (!is_flat_mesh_[m]) {
-        tree_triangles_.insert(tree_triangles_.end(), added.begin(), added.end());
-      } else if (smooth) {
+      in_tree_.resize(plan_.triangles, !is_flat_mesh_[m]);
+      if (is_flat_mesh_[m] && smooth) {
         plan_.flat_triangles.insert(plan_.flat_triangles.end(), added.begin(), added.end());
-      } else {
+      } else if (is_flat_mesh_[m]) {
         add_flat_mesh(plan_, added);
       }
       if (scene_.materials[mesh.material].kind == Material::Kind::kEmission) {
@@ -152,11 +154,23 @@ class Planner {
         std::fill(plan_.prim_light.begin() + first, plan_.prim_light.end(),
                   static_cast<uint32_t>(plan_.lights.size() - 1));
       }
+      if (expendable_) expendable_->meshes[m] = Mesh();
     }
-    if (!any_smooth) plan_.prim_normals.clear();
+    if (!any_smooth) plan_.prim_normals = AlignedVector<float>();
     if (plan_.triangles > 0) {
       say(any_smooth ? "shading normals: interpolated" : "shading normals: every face is flat, none stored");
     }
+  }
+
+  void reserve() {
+    const size_t triangles = scene_.triangle_count(), primitives = triangles + scene_.spheres.size();
+    corners_.reserve(triangles);
+    plan_.prim_normals.reserve(9 * triangles);
+    plan_.prim_shape.reserve(4 * primitives);
+    plan_.prim_err.reserve(primitives);
+    plan_.prim_material.reserve(primitives);
+    plan_.prim_bin.reserve(primitives);
+    plan_.prim_light.reserve(primitives);
   }
 
   // Returns whether its shading normals differ from its face's.
@@ -208,11 +222,12 @@ class Planner {
   }
 
   void build_trees() {
-    plant_triangles(plan_, tree_triangles_);
+    std::erase_if(corners_, [&](const FlatTriangle& t) { return !in_tree_[t.prim]; });
+    plant_triangles(plan_, corners_);
     say("flat lists, tested by whole vectors of rays: " + std::to_string(plan_.flat_quads.size()) +
         " parallelograms (" + std::to_string(plan_.blocking_quads) + " of them can block light), " +
         std::to_string(plan_.flat_triangles.size()) + " triangles (" + std::to_string(plan_.blocking_triangles) + ")");
-    say(std::to_string(tree_triangles_.size()) + " triangles in an 8-wide tree");
+    say(std::to_string(corners_.size()) + " triangles in an 8-wide tree");
     const bool few = spheres_.size() <= kMaxFlatSpheres && plan_.settings.accel == Accel::kPlan;
     if (few) {
       plan_.flat_spheres = spheres_;
@@ -251,17 +266,19 @@ class Planner {
   }
 
   const Scene& scene_;
+  Scene* expendable_;
   Bounds box_;
   Plan plan_;
   std::vector<bool> is_flat_mesh_;
-  std::vector<FlatTriangle> corners_;  // of all triangles, by prim
-  std::vector<FlatTriangle> tree_triangles_;
+  std::vector<FlatTriangle> corners_;  // of all triangles, by prim; in the end of those in the tree
+  std::vector<bool> in_tree_;          // which of them go there
   std::vector<FlatSphere> spheres_;
   bool has_bin_[kBinCount] = {};
 };
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, const Settings& settings) { return Planner(scene, settings).run(); }
+Plan make_plan(const Scene& scene, const Settings& settings) { return Planner(scene, nullptr, settings).run(); }
+Plan make_plan(Scene&& scene, const Settings& settings) { return Planner(scene, &scene, settings).run(); }
 
 }  // namespace lanewise

@@ -173,4 +173,7 @@ struct Plan {
 // Compiles the scene for these settings. Throws Error for what a plan cannot hold (more than 2^31 primitives).
 Plan make_plan(const Scene& scene, const Settings& settings);
 
+// The same; gives back the memory of the scene's meshes as it goes.
+Plan make_plan(Scene&& scene, const Settings& settings);
+
 }  // namespace lanewise

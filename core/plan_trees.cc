@@ -1,7 +1,10 @@
 #include "core/plan_trees.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lanewise {
 namespace {
@@ -37,20 +40,20 @@ void pack(const FlatSphere& s, SphereBlock& block, size_t lane) {
 
 template <class Primitive, class Block>
 void plant(std::span<const Primitive> primitives, Bvh& tree, AlignedVector<Block>& blocks) {
-  std::vector<Box> boxes;
-  boxes.reserve(primitives.size());
-  for (const Primitive& p : primitives) boxes.push_back(box_of(p));
-  tree = build_bvh(boxes);
-  blocks.assign(tree.leaf_prims.size() / kLeafWidth, Block{});
-  for (size_t i = 0; i < tree.leaf_prims.size(); ++i) {
-    Block& block = blocks[i / kLeafWidth];
-    const size_t lane = i % kLeafWidth;
-    // Short blocks repeat their first primitive.
-    uint32_t index = tree.leaf_prims[i];
-    if (index == kNoPrim) index = tree.leaf_prims[i - lane];
-    block.prim[lane] = primitives[index].prim;
-    pack(primitives[index], block, lane);
-  }
+  std::vector<Box> boxes(primitives.size());
+  tbb::parallel_for(size_t{0}, primitives.size(), [&](size_t i) { boxes[i] = box_of(primitives[i]); });
+  tree = build_bvh(std::move(boxes));
+  blocks.resize(tree.leaf_prims.size() / kLeafWidth);
+  tbb::parallel_for(size_t{0}, blocks.size(), [&](size_t b) {
+    const uint32_t* prims = &tree.leaf_prims[b * kLeafWidth];
+    for (size_t lane = 0; lane < kLeafWidth; ++lane) {
+      // Short blocks repeat their first primitive.
+      const Primitive& primitive = primitives[prims[lane] == kNoPrim ? prims[0] : prims[lane]];
+      blocks[b].prim[lane] = primitive.prim;
+      pack(primitive, blocks[b], lane);
+    }
+  });
+  tree.leaf_prims = std::vector<uint32_t>();
 }
 
 }  // namespace

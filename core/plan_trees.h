@@ -7,7 +7,7 @@
 
 namespace lanewise {
 
-// Builds plan.triangle_tree and packs its leaves into plan.triangle_blocks.
+// Builds plan.triangle_tree and packs its leaves into plan.triangle_blocks, which take the place of its leaf_prims.
 void plant_triangles(Plan& plan, std::span<const FlatTriangle> triangles);
 
 // The same for spheres.

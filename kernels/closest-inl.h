@@ -8,6 +8,8 @@
 #define LANEWISE_KERNELS_CLOSEST_INL_H_
 #endif
 
+#include <span>
+
 #include "core/plan.h"
 #include "kernels/flight-inl.h"
 #include "kernels/leaf-inl.h"
@@ -104,9 +106,9 @@ class NearestTriangle {
   using Test = BlockTest;
   static constexpr bool kNearest = true;
 
-  NearestTriangle(const Plan& plan, const HitArrays& hits) : blocks_(plan.triangle_blocks.data()), hits_(hits) {}
+  NearestTriangle(const Plan& plan, const HitArrays& hits) : blocks_(plan.triangle_blocks), hits_(hits) {}
 
-  const Block* Blocks() const { return blocks_; }
+  std::span<const Block> Blocks() const { return blocks_; }
   static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
   static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
     return TestBlockQuickly(block, ray, t_max, test);
@@ -127,7 +129,7 @@ class NearestTriangle {
   }
 
  private:
-  const Block* blocks_;
+  std::span<const Block> blocks_;
   HitArrays hits_;
 };
 
@@ -139,9 +141,9 @@ class NearestSphere {
   using Test = SphereTest;
   static constexpr bool kNearest = true;
 
-  NearestSphere(const Plan& plan, const HitArrays& hits) : blocks_(plan.sphere_blocks.data()), hits_(hits) {}
+  NearestSphere(const Plan& plan, const HitArrays& hits) : blocks_(plan.sphere_blocks), hits_(hits) {}
 
-  const Block* Blocks() const { return blocks_; }
+  std::span<const Block> Blocks() const { return blocks_; }
   static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
   static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
     return TestBlock(block, ray, t_max, test);
@@ -161,7 +163,7 @@ class NearestSphere {
   }
 
  private:
-  const Block* blocks_;
+  std::span<const Block> blocks_;
   HitArrays hits_;
 };
 

@@ -65,7 +65,7 @@ class RayList {
 //   Block                       what a leaf holds
 //   Ray                         what leaves need of a ray
 //   kNearest                    whether t_max shrinks and the order of visits matters
-//   Blocks()                    the first one
+//   Blocks()                    all of them
 //   Make(rays)                  what leaves need of a vector of rays, as Transposed
 //   Test                        what is kept of a block's test until the step's second half
 //   MayHit(Ray&, Block&, t_max, Test&) which of the block's primitives may be hit within t_max: not 0 if any
@@ -77,8 +77,8 @@ class Flight {
       : leaves_(leaves),
         bounds_(bvh.bounds),
         nodes_(bvh.nodes.data()),
-        base_{reinterpret_cast<const char*>(bvh.nodes.data()), reinterpret_cast<const char*>(leaves.Blocks())},
-        landing_(kLeafBit | static_cast<uint32_t>(bvh.leaf_prims.size() / kLeafWidth)),
+        base_{reinterpret_cast<const char*>(bvh.nodes.data()), reinterpret_cast<const char*>(leaves.Blocks().data())},
+        landing_(kLeafBit | static_cast<uint32_t>(leaves.Blocks().size())),
         stride_(7 * bvh.depth + 1 + 2 * kBvhWidth) {
     for (uint32_t i = 0; i < kFlight; ++i) landed_[i] = i;
   }

@@ -1,3 +1,5 @@
+#include <span>
+
 #include "kernels/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -32,9 +34,9 @@ class AnyTriangle {
   using Test = BlockTest;
   static constexpr bool kNearest = false;
 
-  AnyTriangle(const Plan& plan, float* blocked) : blocks_(plan.triangle_blocks.data()), blocked_(blocked) {}
+  AnyTriangle(const Plan& plan, float* blocked) : blocks_(plan.triangle_blocks), blocked_(blocked) {}
 
-  const Block* Blocks() const { return blocks_; }
+  std::span<const Block> Blocks() const { return blocks_; }
   static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
   static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
     return TestBlockQuickly(block, ray, t_max, test);
@@ -52,7 +54,7 @@ class AnyTriangle {
   }
 
  private:
-  const Block* blocks_;
+  std::span<const Block> blocks_;
   float* blocked_;
 };
 
@@ -64,9 +66,9 @@ class AnySphere {
   using Test = SphereTest;
   static constexpr bool kNearest = false;
 
-  AnySphere(const Plan& plan, float* blocked) : blocks_(plan.sphere_blocks.data()), blocked_(blocked) {}
+  AnySphere(const Plan& plan, float* blocked) : blocks_(plan.sphere_blocks), blocked_(blocked) {}
 
-  const Block* Blocks() const { return blocks_; }
+  std::span<const Block> Blocks() const { return blocks_; }
   static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
   static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
     return TestBlock(block, ray, t_max, test);
@@ -80,7 +82,7 @@ class AnySphere {
   }
 
  private:
-  const Block* blocks_;
+  std::span<const Block> blocks_;
   float* blocked_;
 };
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <span>
 
 namespace lanewise {
 namespace {
@@ -59,7 +60,7 @@ struct Walker {
   }
 };
 
-Bvh check_tree(std::span<const Box> boxes) {
+Bvh check_tree(const std::vector<Box>& boxes) {
   const Bvh bvh = build_bvh(boxes);
   Walker walker{boxes, bvh, std::vector<int>(boxes.size()), std::vector<int>(bvh.nodes.size())};
   REQUIRE(!bvh.nodes.empty());

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/file.h"
 #include "core/image_io.h"
@@ -86,9 +87,9 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   RenderSeconds seconds;
   ProgressLine progress(o.quiet);
   progress.show("loading " + o.scene);
-  const Scene scene = timed(seconds.load, [&] { return load_chosen_scene(o); });
+  Scene scene = timed(seconds.load, [&] { return load_chosen_scene(o); });
   progress.show("planning");
-  const Plan plan = timed(seconds.plan, [&] { return make_plan(scene, o.settings); });
+  const Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
   const RenderResult result =
       timed(seconds.render, [&] { return render_with(o, plan, [&](const Progress& p) { progress.show(p); }); });
 
