@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/image.h"
@@ -10,9 +11,18 @@
 
 namespace lanewise {
 
+// Leaves new elements as the memory is.
+template <class T>
+struct UninitializedAllocator : std::allocator<T> {
+  template <class U>
+  void construct(U*) {}
+};
+
 struct Film {
-  std::vector<PixelSums> sums;
-  std::vector<uint32_t> samples;  // behind each pixel's sums
+  // To be set to {} by the thread that is to add to them: then all threads share the work of touching fresh pages, and each
+  // has its own near.
+  std::vector<PixelSums, UninitializedAllocator<PixelSums>> sums;
+  std::vector<uint32_t> samples;  // behind each pixel's sums; 0: they are not looked at
 
   explicit Film(size_t pixels) : sums(pixels), samples(pixels) {}
 };

@@ -23,6 +23,7 @@ Exposure expose_tiles(const Settings& settings, uint32_t threads, const Draw& dr
       [&](size_t item, uint32_t worker) {
         uint64_t rays = 0;
         std::vector<uint32_t>& pixels = tiles[item].pixels;  // that have not converged
+        for (const uint32_t pixel : pixels) film.sums[pixel] = {};
         for (uint32_t done = 0; done < settings.spp && !pixels.empty();) {
           const uint32_t count = std::min(batch, settings.spp - done);
           rays += draw(pixels, done, count, film.sums.data(), worker);

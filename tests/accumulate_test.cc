@@ -88,6 +88,7 @@ TEST_CASE("count_shadow_rays: paths whose light sample is worth a ray") {
 
 TEST_CASE("film: the mean, and when a pixel has converged") {
   Film film(2);
+  film.sums[0] = {};
   film.sums[0].add(0.5, 2, 3);
   film.sums[0].add(1.5, 2, 3);
   film.samples[0] = 2;
