@@ -73,6 +73,7 @@ def draw(times, isas, command):
     axis.axvline(1, color='black', linewidth=0.8)
     axis.set_xscale('log')
     ticks = [0.5, 1, 2, 3, 5, 8, 12, 20, 30]
+    axis.set_xlim(0.3, 35)
     axis.set_xticks(ticks, [f'{t:g} x' for t in ticks])
     axis.minorticks_off()
     axis.set_yticks(range(len(times)), list(times))

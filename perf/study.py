@@ -82,7 +82,8 @@ def save_chart(figure, part, command):
 def slope_guide(axis, x, y, power, label):
     """A line y ~ x^power through (x[0], y), on log axes."""
     axis.plot(x, [y * (v / x[0])**power for v in x], color='grey', linewidth=0.8, linestyle='--')
-    axis.annotate(label, (x[-1], y * (x[-1] / x[0])**power), color='grey', fontsize=8, ha='right', va='bottom')
+    axis.annotate(label, (x[-1], y * (x[-1] / x[0])**power), color='grey', fontsize=8, ha='right', va='top', textcoords='offset points',
+                  xytext=(0, -6))
 
 
 def table(head, rows):

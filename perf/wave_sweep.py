@@ -50,7 +50,7 @@ def draw(relative, least, command):
     below.set_xticks(SIZES, [str(size) for size in SIZES])
     below.set_xlabel('--wave: paths in flight per thread (dashed: the default)')
     axis.set_ylabel(f'seconds / seconds at {DEFAULT}')
-    axis.set_title('Small waves pay for calls and padding, large ones for caches and for threads that wait', fontsize=11)
+    axis.set_title('Seconds of rendering against the wave\'s size (median and range over rounds)', fontsize=11)
     axis.legend(fontsize=8)
     below.set_title('the stage with the fewest living lanes', fontsize=9)
     figure.tight_layout(rect=(0, 0.02, 1, 1))
