@@ -11,7 +11,9 @@ Bvh build_bvh(std::vector<Box> boxes) {
   for (uint32_t i = 0; i < boxes.size(); ++i) refs.emplace_back(boxes[i], i);
   boxes = std::vector<Box>();
   // The binary tree may be deeper: a wide node makes some three of its levels one.
-  Bvh bvh = bvh::collapse(bvh::build_binary(refs, 3 * kMaxBvhDepth), refs);
+  bvh::BinaryTree tree = bvh::build_binary(refs, 3 * kMaxBvhDepth);
+  bvh::optimize(tree);
+  Bvh bvh = bvh::collapse(tree, refs);
   // A wide tree is never deeper than its binary one.
   if (bvh.depth > kMaxBvhDepth) bvh = bvh::collapse(bvh::build_binary(refs, kMaxBvhDepth), refs);
   return bvh;

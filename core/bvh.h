@@ -45,8 +45,9 @@ constexpr uint32_t kMaxBvhDepth = 32;
 constexpr uint32_t kBvhStackSize = 7 * kMaxBvhDepth + 8;
 
 // Builds a binary tree by SAH with bins (Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007),
-// of which it then makes the wide one of least cost (Ylitie et al. 2017, sec. 3.2), by all threads. The boxes must be
-// finite with lo <= hi, and less than 2^29; their memory is given back early. Deterministic: a function of the boxes alone.
+// moves its large subtrees to better places (Bittner, Hapala & Havran 2013), and then makes of it the wide tree of least
+// cost (Ylitie et al. 2017, sec. 3.2), by all threads. The boxes must be finite with lo <= hi, and less than 2^29; their
+// memory is given back early. Deterministic: a function of the boxes alone.
 Bvh build_bvh(std::vector<Box> boxes);
 
 }  // namespace lanewise

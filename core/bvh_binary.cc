@@ -1,13 +1,12 @@
 #include "core/bvh_binary.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <atomic>
-#include <cmath>
-#include <vector>
+
+#include "core/bvh_partition.h"
 
 namespace lanewise::bvh {
 namespace {
@@ -20,7 +19,6 @@ constexpr uint32_t kFewRefs = 4;
 // Subtrees below this size are built by the thread that reaches them, nodes above the other one by all threads.
 constexpr uint32_t kParallelSubtree = 4096;
 constexpr uint32_t kParallelNode = 65536;
-constexpr uint32_t kChunk = 16384;
 
 // Leaves are tested by the block, so that a block that is full costs no more than one that is not.
 float blocks_of(uint32_t refs) { return static_cast<float>((refs + kLeafWidth - 1) / kLeafWidth); }
@@ -31,29 +29,6 @@ struct Split {
   float cost = kInf;  // area times blocks, summed over both sides
   int axis = -1;
   uint32_t at = 0;  // the first bin, or the first in order, on the right
-};
-
-// References that lie together.
-struct Group {
-  uint32_t first = 0;
-  uint32_t count = 0;
-  Bounds4 box;
-  Bounds4 centroids;
-
-  void add(const Ref& r) {
-    box.add(r.box);
-    centroids.add(r.centroid(), r.centroid());
-    ++count;
-  }
-  void add(const Group& g) {
-    box.add(g.box);
-    centroids.add(g.centroids);
-    count += g.count;
-  }
-};
-
-struct Sides {
-  Group left, right;
 };
 
 // Maps centroids to bins; the same expression decides where a reference is counted and where it goes.
@@ -125,59 +100,6 @@ Split Bins::best_split(const BinMap& map) const {
   return best;
 }
 
-// Puts first the references that `goes_left` holds for.
-template <class GoesLeft>
-Sides partition(std::span<Ref> refs, uint32_t first, const GoesLeft& goes_left) {
-  Sides sides;
-  size_t i = 0, j = refs.size();
-  for (;;) {
-    for (; i < j && goes_left(refs[i]); ++i) sides.left.add(refs[i]);
-    for (; i < j && !goes_left(refs[j - 1]); --j) sides.right.add(refs[j - 1]);
-    if (i >= j) break;
-    std::swap(refs[i], refs[j - 1]);
-  }
-  sides.left.first = first;
-  sides.right.first = first + sides.left.count;
-  return sides;
-}
-
-// The same by all threads: each chunk by itself, then the wrong ones of both sides change places.
-template <class GoesLeft>
-Sides partition_in_parallel(std::span<Ref> refs, uint32_t first, const GoesLeft& goes_left) {
-  const size_t chunks = (refs.size() + kChunk - 1) / kChunk;
-  std::vector<Sides> parts(chunks);
-  tbb::parallel_for(size_t{0}, chunks, [&](size_t c) {
-    const size_t begin = c * kChunk;
-    parts[c] = partition(refs.subspan(begin, std::min<size_t>(kChunk, refs.size() - begin)),
-                         static_cast<uint32_t>(begin), goes_left);
-  });
-  Sides sides;
-  for (const Sides& part : parts) {
-    sides.left.add(part.left);
-    sides.right.add(part.right);
-  }
-  // Right ones below the middle, left ones above it: as many of each.
-  const uint32_t middle = sides.left.count;
-  const auto end_of = [](const Group& g) { return g.first + g.count; };
-  uint32_t low = 0, high = 0;
-  size_t c_low = 0, c_high = 0;
-  const auto next = [&](uint32_t& at, size_t& c, Group Sides::*side, uint32_t from, uint32_t to) {
-    for (; c < chunks; ++c) {
-      const Group& g = parts[c].*side;
-      at = std::max({at, g.first, from});
-      if (at < std::min(end_of(g), to)) return true;
-    }
-    return false;
-  };
-  const uint32_t all = static_cast<uint32_t>(refs.size());
-  while (next(low, c_low, &Sides::right, 0, middle) && next(high, c_high, &Sides::left, middle, all)) {
-    std::swap(refs[low++], refs[high++]);
-  }
-  sides.left.first = first;
-  sides.right.first = first + middle;
-  return sides;
-}
-
 class Builder {
  public:
   Builder(std::span<Ref> refs, uint32_t max_depth)
@@ -195,7 +117,7 @@ class Builder {
     build(0, all, 0);
   }
 
-  BinaryTree tree() { return {std::move(nodes_)}; }
+  BinaryTree tree() { return {std::move(nodes_), next_node_}; }
 
  private:
   std::span<Ref> refs_of(const Group& g) { return refs_.subspan(g.first, g.count); }
@@ -213,6 +135,7 @@ class Builder {
     const Sides sides = halve ? split_in_half(group) : group.count <= kSweep ? sweep(group) : split_by_bins(group);
     const uint32_t left = next_node_.fetch_add(2, std::memory_order_relaxed);
     node.left = left;
+    node.right = left + 1;
     const auto build_left = [&] { build(left, sides.left, depth + 1); };
     const auto build_right = [&] { build(left + 1, sides.right, depth + 1); };
     if (group.count > kParallelSubtree) {

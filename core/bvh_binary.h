@@ -55,9 +55,9 @@ struct Ref {
 
 struct BinaryNode {
   float lo[3], hi[3];
-  uint32_t first;                             // of its references, which lie together
-  uint32_t count;                             // of them
-  uint32_t left;                              // the right child is the next; 0: a leaf
+  uint32_t first;                             // a leaf's first reference; the others follow
+  uint32_t count;                             // references of all leaves below
+  uint32_t left, right;                       // children; left is 0 for a leaf
   std::array<uint8_t, kBvhWidth> left_share;  // see bvh_collapse.cc
   uint32_t wide;                              // its place in the wide tree, as in BvhNode::child
 
@@ -69,11 +69,15 @@ struct BinaryNode {
 
 struct BinaryTree {
   std::unique_ptr<BinaryNode[]> nodes;  // nodes[0] is the root; where the others are depends on the threads' timing
+  size_t size = 0;                      // nodes
 };
 
 // Splits by SAH down to a few references, but no deeper than max_depth levels below the root. Sorts refs so that those
 // of a node lie together. The tree's shape and the order of refs are functions of refs alone.
 BinaryTree build_binary(std::span<Ref> refs, uint32_t max_depth);
+
+// Lowers the tree's SAH cost by moving large subtrees. References of an inner node then no longer lie together.
+void optimize(BinaryTree& tree);
 
 // Makes the wide tree of least SAH cost that the binary one holds.
 Bvh collapse(const BinaryTree& tree, std::span<const Ref> refs);

@@ -92,7 +92,7 @@ class Collapser {
     }
     Costs left, right;
     const auto find_left = [&] { left = find_costs(nodes_[node.left]); };
-    const auto find_right = [&] { right = find_costs(nodes_[node.left + 1]); };
+    const auto find_right = [&] { right = find_costs(nodes_[node.right]); };
     if (node.count > kParallelSubtree) {
       tbb::parallel_invoke(find_left, find_right);
     } else {
@@ -137,7 +137,7 @@ class Collapser {
   }
   void gather_both(BinaryNode& node, uint32_t left_share, uint32_t n, Children& children) const {
     gather(nodes_[node.left], left_share, children);
-    gather(nodes_[node.left + 1], n - left_share, children);
+    gather(nodes_[node.right], n - left_share, children);
   }
 
   Children children_of(BinaryNode& node) const {
@@ -183,7 +183,17 @@ class Collapser {
 
   void fill_block(const BinaryNode& leaf) {
     uint32_t* prims = &bvh_.leaf_prims[size_t{leaf_block(leaf.wide)} * kLeafWidth];
-    for (uint32_t i = 0; i < kLeafWidth; ++i) prims[i] = i < leaf.count ? refs_[leaf.first + i].prim() : kNoPrim;
+    uint32_t n = 0;
+    fill_lanes(leaf, prims, n);
+    std::fill(prims + n, prims + kLeafWidth, kNoPrim);
+  }
+  void fill_lanes(const BinaryNode& node, uint32_t* prims, uint32_t& n) const {
+    if (node.left != 0) {
+      fill_lanes(nodes_[node.left], prims, n);
+      fill_lanes(nodes_[node.right], prims, n);
+      return;
+    }
+    for (const Ref& ref : refs_.subspan(node.first, node.count)) prims[n++] = ref.prim();
   }
 
   BinaryNode* nodes_;
