@@ -138,6 +138,11 @@ Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;
   spare_.result_b = state_.result_b;
+  // Barycentric weights that no normal is mixed with need not survive the sort: it leaves what both states share in its place.
+  if (plan.prim_normals.empty()) {
+    spare_.u = state_.u;
+    spare_.v = state_.v;
+  }
 }
 
 }  // namespace lanewise

@@ -44,6 +44,22 @@ struct DummyWords {
   }
 };
 
+// Those of the first `fields` of the list that are not one array for both states.
+struct MovedFields {
+  int count = 0;
+  const uint32_t* source[FieldWords::kKept];
+  uint32_t* target[FieldWords::kKept];
+
+  MovedFields(const PathState& from, const PathState& to, int fields) {
+    const FieldWords source_words(from), target_words(to);
+    for (int f = 0; f < fields; ++f) {
+      if (source_words.words[f] == target_words.words[f]) continue;
+      source[count] = source_words.words[f];
+      target[count++] = target_words.words[f];
+    }
+  }
+};
+
 }  // namespace lanewise
 #endif
 
@@ -58,6 +74,35 @@ HWY_INLINE VU LoadBins(const PathState& from, size_t i, VU padding_slot) {
   return hn::IfThenElse(padding, hn::Set(d, uint32_t{kBinCount}), hn::Load(d, from.bin + i));
 }
 
+// How many paths each bin gets, and where.
+HWY_INLINE Bins CountBins(const PathState& from, Range range, VU padding_slot) {
+  const DU d;
+  VU counts[kBinCount];
+  for (VU& count : counts) count = hn::Zero(d);
+  for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
+    const VU bin = LoadBins(from, i, padding_slot);
+    for (uint32_t b = 0; b < kBinCount; ++b) {
+      counts[b] = hn::Sub(counts[b], hn::VecFromMask(d, hn::Eq(bin, hn::Set(d, b))));
+    }
+  }
+  Bins bins;
+  uint32_t begin = 0;
+  for (uint32_t b = 0; b < kBinCount; ++b) {
+    bins.bin[b] = {begin, begin + hn::GetLane(hn::SumOfLanes(d, counts[b]))};
+    begin = round_up_to_lanes(bins.bin[b].end);
+  }
+  return bins;
+}
+
+// Dummy paths from slot `end` on, for as many slots as a bin may be short of.
+HWY_INLINE void Pad(const FieldWords& target, const DummyWords& dummy, uint32_t end) {
+  const DU d;
+  for (int f = 0; f < FieldWords::kAll; ++f) {
+    const VU fill = hn::Set(d, dummy.words[f]);
+    for (size_t k = 0; k < kLanes; k += hn::Lanes(d)) hn::StoreU(fill, d, target.words[f] + end + k);
+  }
+}
+
 // Counts first, then moves bin after bin. Within a bin each vector's members are compressed in a register and stored
 // whole: what a store writes past the bin's end is overwritten by the padding or by the next bin, which comes later.
 // (Compressing stores are microcode on Zen 4, masked stores are slow on Zen 3; plain stores are fast everywhere.)
@@ -65,23 +110,15 @@ Bins SortByBin(const PathState& from, const PathState& to, Range range) {
   const DU d;
   const size_t lanes = hn::Lanes(d);
   const VU padding_slot = hn::Set(d, from.capacity);
+  Bins bins = CountBins(from, range, padding_slot);
 
-  Bins bins;
-  uint32_t count[kBinCount] = {};
-  for (size_t i = range.begin; i < range.end; i += lanes) {
-    const VU bin = LoadBins(from, i, padding_slot);
-    for (uint32_t b = 0; b < kBinCount; ++b) {
-      count[b] += static_cast<uint32_t>(hn::CountTrue(d, hn::Eq(bin, hn::Set(d, b))));
-    }
-  }
-
-  const FieldWords source(from), target(to);
+  const FieldWords target(to);
   const DummyWords dummy(from.capacity);
-  uint32_t cursor = 0;
+  const MovedFields kept(from, to, FieldWords::kKept), retired(from, to, kRetiredFields);
   for (uint32_t b = 0; b < kBinCount; ++b) {
-    bins.bin[b] = {cursor, cursor + count[b]};
-    if (count[b] == 0) continue;
-    const int fields = b == kFinished ? kRetiredFields : FieldWords::kKept;
+    if (bins[b].size() == 0) continue;
+    uint32_t cursor = bins[b].begin;
+    const MovedFields& fields = b == kFinished ? retired : kept;
     for (size_t i = range.begin; i < range.end; i += lanes) {
       const auto member = hn::Eq(LoadBins(from, i, padding_slot), hn::Set(d, b));
       const size_t members = hn::CountTrue(d, member);
@@ -90,21 +127,19 @@ Bins SortByBin(const PathState& from, const PathState& to, Range range) {
         const auto dead = hn::Eq(MaxElement(LoadVec3(from.beta_r, from.beta_g, from.beta_b, i)), hn::Zero(DF()));
         bins.dead += static_cast<uint32_t>(hn::CountTrue(d, hn::And(member, hn::RebindMask(d, dead))));
       }
-      if (members == lanes) {
-        for (int f = 0; f < fields; ++f) hn::StoreU(hn::Load(d, source.words[f] + i), d, target.words[f] + cursor);
-      } else {
-        const Compressor compress(member);
-        for (int f = 0; f < fields; ++f) {
-          hn::StoreU(compress(hn::Load(d, source.words[f] + i)), d, target.words[f] + cursor);
-        }
+      if (members == 1 && lanes > 1) {  // as in bins of few paths: faster than stores that straddle cache lines
+        const size_t k = i + static_cast<size_t>(hn::FindFirstTrue(d, member));
+        for (int f = 0; f < fields.count; ++f) fields.target[f][cursor] = fields.source[f][k];
+        ++cursor;
+        continue;
+      }
+      const Compressor compress(member);
+      for (int f = 0; f < fields.count; ++f) {
+        hn::StoreU(compress(hn::Load(d, fields.source[f] + i)), d, fields.target[f] + cursor);
       }
       cursor += static_cast<uint32_t>(members);
     }
-    for (int f = 0; f < FieldWords::kAll; ++f) {
-      const VU fill = hn::Set(d, dummy.words[f]);
-      for (size_t k = 0; k < kLanes; k += lanes) hn::StoreU(fill, d, target.words[f] + cursor + k);
-    }
-    cursor = round_up_to_lanes(cursor);
+    Pad(target, dummy, cursor);
   }
   return bins;
 }
