@@ -20,8 +20,11 @@ struct StageCounter {
   uint64_t paths = 0;        // living, without padding
   uint64_t lanes = 0;        // run, with padding
   uint64_t rays = 0;         // traced
-  uint64_t nanoseconds = 0;  // 0 if the clock is off: see ProfileDetail
-  QueueLengths lengths;      // paths of each call
+  uint64_t nanoseconds = 0;  // this and the next two are 0 if the clock is off: see ProfileDetail
+  // Of the calls in calm waves, in which the thread ran all the time: what else the machine does is not in them.
+  uint64_t calm_paths = 0;
+  uint64_t calm_nanoseconds = 0;
+  QueueLengths lengths;  // paths of each call
 
   void add(const StageCounter& other) {
     calls += other.calls;
@@ -29,6 +32,8 @@ struct StageCounter {
     lanes += other.lanes;
     rays += other.rays;
     nanoseconds += other.nanoseconds;
+    calm_paths += other.calm_paths;
+    calm_nanoseconds += other.calm_nanoseconds;
     lengths.add(other.lengths);
   }
 };
@@ -36,7 +41,9 @@ struct StageCounter {
 struct Profile {
   // [bounce][stage], as many bounces as there were. What runs once a wave (generate, emission, accumulate) counts as bounce 0.
   std::vector<std::array<StageCounter, kStageCount>> bounces;
-  uint64_t wave_nanoseconds = 0;  // in all stages and between them
+  // Zeros if the clock is off. Times are those in stages and between them; for calm see StageCounter.
+  uint64_t waves = 0, calm_waves = 0;
+  uint64_t wave_nanoseconds = 0, calm_wave_nanoseconds = 0;
   uint64_t samples = 0;
   uint64_t bounce_rays = 0;
   uint64_t shadow_rays = 0;
@@ -79,7 +86,10 @@ struct Profile {
     for (size_t b = 0; b < other.bounces.size(); ++b) {
       for (size_t i = 0; i < kStageCount; ++i) bounces[b][i].add(other.bounces[b][i]);
     }
+    waves += other.waves;
+    calm_waves += other.calm_waves;
     wave_nanoseconds += other.wave_nanoseconds;
+    calm_wave_nanoseconds += other.calm_wave_nanoseconds;
     samples += other.samples;
     bounce_rays += other.bounce_rays;
     shadow_rays += other.shadow_rays;

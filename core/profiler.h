@@ -11,13 +11,13 @@
 
 namespace lanewise {
 
-// Counting is always on. What is more costs some 50 ns a call.
+// Counting is always on. What is more costs some 60 ns a call and 1 us a wave.
 struct ProfileDetail {
-  bool clock = false;         // the nanoseconds of Profile
-  uint32_t logged_waves = 0;  // of each thread, the first so many leave their calls in a log
+  bool clock = false;         // the times of Profile
+  uint32_t logged_waves = 0;  // of each thread, the first so many leave their calls in a log; needs the clock
 };
 
-// One call in the log. Stage::kCount: a wave as a whole.
+// One call. Stage::kCount: a wave as a whole.
 struct LoggedCall {
   uint64_t start = 0;  // nanoseconds of std::chrono::steady_clock
   uint64_t nanoseconds = 0;
@@ -27,60 +27,75 @@ struct LoggedCall {
 };
 
 class Profiler {
-  using Clock = std::chrono::steady_clock;
-  static_assert(std::is_same_v<Clock::period, std::nano>);
-
  public:
   static constexpr size_t kMostLogged = 100'000;  // calls, whatever logged_waves says: waves of deep paths have many
 
-  // Lasts as long as what it clocks.
-  class Clocked {
+  // Each lasts as long as what it clocks.
+  class Call {
    public:
-    Clocked(Profiler& profiler, uint64_t& sum, const LoggedCall& call) : profiler_(profiler), sum_(sum), call_(call) {
+    Call(Profiler& profiler, const LoggedCall& call) : profiler_(profiler), call_(call) {
       if (profiler_.detail_.clock) call_.start = now();
     }
-    ~Clocked() {
+    ~Call() {
       if (!profiler_.detail_.clock) return;
       call_.nanoseconds = now() - call_.start;
-      sum_ += call_.nanoseconds;
-      profiler_.log(call_);
+      profiler_.calls_.push_back(call_);
     }
-    Clocked(const Clocked&) = delete;
-    Clocked& operator=(const Clocked&) = delete;
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
 
    private:
     Profiler& profiler_;
-    uint64_t& sum_;
     LoggedCall call_;
+  };
+  class Wave {
+   public:
+    Wave(Profiler& profiler, uint32_t paths);
+    ~Wave();
+    Wave(const Wave&) = delete;
+    Wave& operator=(const Wave&) = delete;
+
+   private:
+    Profiler& profiler_;
+    LoggedCall wave_;
   };
 
   explicit Profiler(ProfileDetail detail) : detail_(detail) {}
 
-  // paths: living; lanes: run.
-  Clocked call(Stage stage, uint32_t bounce, uint32_t paths, uint32_t lanes) {
+  Wave wave(uint32_t paths) { return Wave(*this, paths); }
+  // Within a wave. paths: living; lanes: run.
+  Call call(Stage stage, uint32_t bounce, uint32_t paths, uint32_t lanes) {
     StageCounter& counter = profile.at(stage, bounce);
     counter.calls += 1;
     counter.paths += paths;
     counter.lanes += lanes;
     counter.lengths.add(paths);
-    return Clocked(*this, counter.nanoseconds, {.stage = stage, .bounce = bounce, .paths = paths});
+    return Call(*this, {.stage = stage, .bounce = bounce, .paths = paths});
   }
-  Clocked wave(uint32_t paths) { return Clocked(*this, profile.wave_nanoseconds, {.paths = paths}); }
 
-  const std::vector<LoggedCall>& log() const { return log_; }
+  const std::vector<LoggedCall>& log() const { return log_; }  // by the time that calls ended
 
   Profile profile;
 
  private:
-  static uint64_t now() { return static_cast<uint64_t>(Clock::now().time_since_epoch().count()); }
-
-  void log(const LoggedCall& call) {
-    if (detail_.logged_waves == 0 || log_.size() >= kMostLogged) return;
-    log_.push_back(call);
-    if (call.stage == Stage::kCount) --detail_.logged_waves;  // a wave ends after its calls
+  static uint64_t now() {
+    static_assert(std::is_same_v<std::chrono::steady_clock::period, std::nano>);
+    return static_cast<uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
   }
+  // Where a thread's two clocks stand: what it waited in between is the difference of their differences.
+  struct Clocks {
+    uint64_t wall = 0;
+    uint64_t cpu = 0;  // time that the thread has run
+    const void* thread = nullptr;
+
+    static Clocks now();
+  };
+  void begin_wave();
+  void end_wave(const LoggedCall& wave);
 
   ProfileDetail detail_;
+  Clocks since_;                   // of the wave that runs, or the end of the last
+  std::vector<LoggedCall> calls_;  // of the wave that runs
   std::vector<LoggedCall> log_;
 };
 

@@ -50,7 +50,7 @@ Kernel* kernel_of(Stage stage) {
 }  // namespace
 
 void Wave::run(const Batch& batch, PixelSums* film) {
-  const auto clocked = profiler_.wave(batch.paths);
+  const auto wave = profiler_.wave(batch.paths);
   state_.batch = batch;
   state_.step = {};
   Range live{0, batch.paths};
@@ -61,10 +61,10 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     state_.step.bounce = bounce;
     run(Stage::kIntersect, live, paths);
     const Bins bins = sort(live, paths);
-    profiler_.profile.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
+    profile_.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
     emitters_.append(state_, bins[kEmitter]);
     run(Stage::kRetire, bins[kFinished]);
-    profiler_.profile.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
+    profile_.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
 
     live = bins.span(0, kSurfaceBins);
     paths = bins.paths(0, kSurfaceBins);
@@ -81,8 +81,8 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   run(Stage::kRetire, emitters_.state(), met, met.size());
 
   const auto call = count(Stage::kAccumulate, {0, batch.paths}, batch.paths);
-  profiler_.profile.samples += batch.paths;
-  profiler_.profile.invalid_samples += accumulate(state_, film);
+  profile_.samples += batch.paths;
+  profile_.invalid_samples += accumulate(state_, film);
 }
 
 // Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn.
@@ -102,7 +102,7 @@ void Wave::add_direct_light(const Bins& bins) {
         if (stages.light != Stage::kCount) run(stages.light, bins[stages.bin]);
       }
       const Stage trace = hemisphere ? Stage::kGatherEmission : Stage::kOcclude;
-      profiler_.profile.count_rays(trace, state_.step.bounce, count_shadow_rays(state_, rough));
+      profile_.count_rays(trace, state_.step.bounce, count_shadow_rays(state_, rough));
       run(trace, rough, paths);
     }
   }
@@ -114,7 +114,7 @@ void Wave::run(Stage stage, const PathState& s, Range range, uint32_t paths) {
   kernel_of(stage)(plan_, s, range);
 }
 
-Profiler::Clocked Wave::count(Stage stage, Range range, uint32_t paths) {
+Profiler::Call Wave::count(Stage stage, Range range, uint32_t paths) {
   return profiler_.call(stage, state_.step.bounce, paths, round_up_to_lanes(range.size()));
 }
 

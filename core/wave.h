@@ -26,7 +26,7 @@ class Wave {
   void run(Stage stage, Range range) { run(stage, range, range.size()); }
   Bins sort(Range range, uint32_t paths);
   // Counts a call, and clocks it as long as what is returned lasts.
-  Profiler::Clocked count(Stage stage, Range range, uint32_t paths);
+  Profiler::Call count(Stage stage, Range range, uint32_t paths);
   void add_direct_light(const Bins& bins);
 
   const Plan& plan_;
@@ -36,6 +36,7 @@ class Wave {
   PathState spare_;     // where the next sort moves them
   PathQueue emitters_;  // the paths that have met one, of all bounces
   Profiler profiler_;
+  Profile& profile_ = profiler_.profile;
 };
 
 }  // namespace lanewise

@@ -171,10 +171,10 @@ TEST_CASE("profile command: tables that fit a terminal") {
     CAPTURE(text);
     CHECK(result.out.find(text) != std::string::npos);
   }
-  std::istringstream lines(result.out);
-  for (std::string line; std::getline(lines, line);) {
+  std::istringstream tables(result.out.substr(result.out.find("\n\n")));  // what is above them names files
+  for (std::string line; std::getline(tables, line);) {
     CAPTURE(line);
-    if (line.find(box()) == std::string::npos) CHECK(line.size() <= 118);
+    CHECK(line.size() <= 118);
   }
   CHECK(profile_small(folder, {"--no-scaling"}).out.find("speedup") == std::string::npos);
 }
@@ -193,6 +193,7 @@ TEST_CASE("profile command: nothing has changed between a profile and itself") {
   json changed = json::parse(read_text(folder.file("old.json")));
   changed["settings"]["--spp"] = "16";
   changed["isa"] = "neon";
+  changed["calm_waves"] = 1;
   for (json& stage : changed["stages"]) {
     const double factor = stage["name"] == "sort" ? 0.5 : stage["name"] == "surface" ? 3.0 : 1.0;
     double spread = 1;  // the runs' own noise would hide a change as it should

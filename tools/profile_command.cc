@@ -29,11 +29,12 @@ namespace lanewise {
 namespace {
 
 constexpr const char* kFooter =
-    "Times are thread time by the clock around each call of a stage: of each stage and bounce the least of the runs,\n"
-    "which is the one least disturbed. Renders with the clock and without it take turns, to show what profiling "
-    "costs.\n"
-    "--compare marks a stage as faster or slower where the medians differ by more than 2 % and the runs, by the rank\n"
-    "test, would differ so in fewer than 1 of 100 comparisons of equals; that takes five runs on both sides.\n"
+    "Times of stages are medians of the runs, and in each of calm waves: those in which the thread ran all the time.\n"
+    "Renders with the clock and without it take turns, which shows what profiling costs.\n"
+    "--compare marks a stage as faster or slower where the medians differ by more than 3 % (10 % if it has less than\n"
+    "1 % of the time; more on a busy machine) and where the runs, by the rank test, would differ so in fewer than 1 "
+    "of\n"
+    "100 comparisons of equals; that takes five runs on both sides.\n"
     "In place of the scene may stand a profile that --json has written: it is shown again, and nothing is rendered.\n\n"
     "Examples:\n"
     "  lanewise profile box.dae                                       tables of stages and bounces\n"

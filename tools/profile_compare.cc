@@ -10,27 +10,34 @@ namespace lanewise {
 namespace {
 
 constexpr double kAlarms = 0.01;  // false ones, of all comparisons of equals
-constexpr double kLeast = 0.02;   // change of the median
 
-bool is_significant(const std::vector<double>& before, const std::vector<double>& now) {
-  return std::fabs(median(now) / median(before) - 1) > kLeast && rank_test(before, now) < kAlarms;
-}
+// The least change of a median that is marked, and for stages with less than the share kSmall of the time.
+constexpr double kLeast = 0.03, kLeastOfSmall = 0.10, kSmall = 0.01;
+constexpr double kOfBusy = 0.3;  // is added for each share of the waves that were not calm
 
 std::string noise_of(const std::vector<double>& values) {
   const double middle = median(values);
   return middle > 0 ? print("%.1f", 100 * robust_deviation(values) / middle) : "";
 }
 
-std::string row(const std::string& name, double unit, const std::vector<double>& before,
-                const std::vector<double>& now) {
-  const double ratio = median(before) > 0 ? median(now) / median(before) : 0;
-  std::string text = print("%-17s %9.2f %6s %9.2f %6s %8.3f", name.c_str(), unit * median(before),
-                           noise_of(before).c_str(), unit * median(now), noise_of(now).c_str(), ratio);
-  if (is_significant(before, now)) text += ratio < 1 ? "  faster" : "  SLOWER";
-  return text + "\n";
-}
+// One row: ns of each run, and by how much their medians must differ.
+struct Change {
+  std::string name;
+  std::vector<double> before, now;
+  double least = kLeast;
 
-std::vector<double> ns_a_sample(const ProfileReport& r) {
+  double ratio() const { return median(before) > 0 ? median(now) / median(before) : 0; }
+  bool is_significant() const { return std::fabs(ratio() - 1) > least && rank_test(before, now) < kAlarms; }
+  std::string row() const {
+    std::string text = print("%-17s %9.2f %6s %9.2f %6s %8.3f", name.c_str(), median(before), noise_of(before).c_str(),
+                             median(now), noise_of(now).c_str(), ratio());
+    if (is_significant()) text += ratio() < 1 ? "  faster" : "  SLOWER";
+    return text + "\n";
+  }
+};
+
+// CPU time of a sample, in each run.
+std::vector<double> cpu_ns(const ProfileReport& r) {
   std::vector<double> ns;
   for (const double seconds : r.cpu_seconds)
     ns.push_back(1e9 * seconds / static_cast<double>(std::max<uint64_t>(r.samples, 1)));
@@ -74,28 +81,34 @@ const StageReport* find(const ProfileReport& r, const std::string& name) {
 std::string compare_profiles(const std::string& old_path, const ProfileReport& before, const ProfileReport& now) {
   std::string text = "compared with " + old_path + ", made by: " + before.command + "\n" + differences(before, now);
   text += print("%-17s %9s %6s %9s %6s %8s\n", "ns/path", "old", "+- %", "new", "+- %", "new/old");
-  int significant = is_significant(ns_a_sample(before), ns_a_sample(now));
-  std::vector<double> ratios;
+  const double busy = kOfBusy * (1 - std::min(before.calm_waves, now.calm_waves));
+  std::vector<Change> changes;
   for (const StageReport& stage : now.stages) {
-    const StageReport* old_stage = find(before, stage.name);
-    if (!old_stage) {
-      text += print("%-17s %9s %6s %9.2f\n", stage.name.c_str(), "-", "", median(stage.run_ns));
-      continue;
-    }
-    text += row(stage.name, 1, old_stage->run_ns, stage.run_ns);
-    significant += is_significant(old_stage->run_ns, stage.run_ns);
+    const StageReport* old = find(before, stage.name);
+    if (!old) continue;
+    const double least = (now.share(stage.total.seconds) < kSmall ? kLeastOfSmall : kLeast) + busy;
+    changes.push_back({stage.name, old->run_ns, stage.run_ns, least});
+  }
+  changes.push_back({"CPU, ns/sample", cpu_ns(before), cpu_ns(now), kLeast + busy});
+  int significant = 0;
+  for (const Change& change : changes) {
+    text += change.row();
+    significant += change.is_significant();
+  }
+  for (const StageReport& stage : now.stages) {
+    if (!find(before, stage.name)) text += stage.name + ": only now\n";
   }
   for (const StageReport& stage : before.stages) {
-    if (!find(now, stage.name))
-      text += print("%-17s %9.2f %6s %9s\n", stage.name.c_str(), median(stage.run_ns), "", "-");
+    if (!find(now, stage.name)) text += stage.name + ": no more\n";
   }
-  text += row("a sample, in all", 1, ns_a_sample(before), ns_a_sample(now));
   if (std::min(before.seconds.size(), now.seconds.size()) < 5) {
     return text + "Too few runs to tell a change from noise: --repeat 5 or more, on both sides.\n";
   }
   if (significant == 0) return text + "No change beyond the noise.\n";
-  return text + print("%d beyond the noise: medians differ by more than %g %%, and the rank test gives p < %g.\n",
-                      significant, 100 * kLeast, kAlarms);
+  return text +
+         print(
+             "%d beyond the noise: p < %g by the rank test, and more than %.1f %% (%.1f %% below %g %% of the time).\n",
+             significant, kAlarms, 100 * (kLeast + busy), 100 * (kLeastOfSmall + busy), 100 * kSmall);
 }
 
 }  // namespace lanewise

@@ -154,7 +154,7 @@ std::string profile_page(const ProfileReport& r) {
   html += figure("Bandwidth", "Fields of paths read and written, of one thread; without the scene&#39;s data.",
                  dots(
                      r, "GB/s", 0, [](const auto&, const StageWork& w) { return 1e-9 * w.bytes_per_second(); }, every));
-  html += figure("Time by bounce", "Of all stages. Bounce 0 holds generate and accumulate too.", time_by_bounce(r));
+  html += figure("Time by bounce", "Of all stages. Bounce 0 holds what runs once a wave, too.", time_by_bounce(r));
   const auto traces = [](const StageReport& stage) { return stage.traces(); };
   if (std::any_of(r.stages.begin(), r.stages.end(), traces)) {
     html += figure("Rays", "Traced in a second by one thread, in the stages that trace; one dot a bounce.",

@@ -114,9 +114,10 @@ ProfileReport report_from(const Json& json) {
   r.seconds_unclocked = times_from(json.at("seconds_unclocked"), runs);
   r.cpu_seconds = times_from(json.at("cpu_seconds"), runs);
   r.cpu_seconds_unclocked = times_from(json.at("cpu_seconds_unclocked"), runs);
+  r.calm_waves = json.at("calm_waves");
   r.between_stages = json.at("between_stages");
   r.outside_waves = json.at("outside_waves");
-  r.call_seconds = json.at("call_seconds");
+  r.clock_seconds = json.at("clock_seconds");
   for (const Json& stage : json.at("stages")) r.stages.push_back(stage_from(stage, runs));
   for (const Json& point : json.at("scaling")) {
     r.scaling.push_back({point.at("threads"), times_from(point.at("seconds"), point.at("seconds").size())});
@@ -149,9 +150,10 @@ std::string profile_json(const ProfileReport& r) {
                {"cpu_seconds", r.cpu_seconds},
                {"cpu_seconds_unclocked", r.cpu_seconds_unclocked},
                {"stage_seconds", r.stage_seconds()},
+               {"calm_waves", r.calm_waves},
                {"between_stages", r.between_stages},
                {"outside_waves", r.outside_waves},
-               {"call_seconds", r.call_seconds},
+               {"clock_seconds", r.clock_seconds},
                {"overhead", {{"by_count", r.overhead_by_count()}, {"by_turns", {low, middle, high}}}},
                {"stages", Json::array()},
                {"scaling", Json::array()}};

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <limits>
 
 #include "core/render.h"
 #include "core/stage_fields.h"
@@ -34,19 +35,31 @@ Run run_once(const Plan& plan, bool clock) {
   return run;
 }
 
-double stage_seconds(const RenderStats& stats) {
-  double sum = 0;
-  for (const StageStats& stage : stats.stages) sum += stage.seconds;
-  return sum;
+// Seconds of one thread that counting and clocking take in a render of so many waves and calls: of empty ones of both. The
+// least of some trials, so that what else the machine does is not in it.
+double clock_seconds(uint64_t waves, uint64_t calls) {
+  constexpr uint32_t kTrials = 20, kWaves = 20;
+  const auto calls_per_wave =
+      static_cast<uint32_t>(std::clamp<uint64_t>(calls / std::max<uint64_t>(waves, 1), 1, 10'000));
+  double least = std::numeric_limits<double>::infinity();
+  for (uint32_t trial = 0; trial < kTrials; ++trial) {
+    Profiler profiler({.clock = true});
+    const auto start = std::chrono::steady_clock::now();
+    for (uint32_t w = 0; w < kWaves; ++w) {
+      const auto wave = profiler.wave(4096);
+      for (uint32_t c = 0; c < calls_per_wave; ++c)
+        profiler.call(static_cast<Stage>(c % kStageCount), c % 8, 4096, 4096);
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    least = std::min(least, elapsed.count());
+  }
+  return least / kWaves * static_cast<double>(waves);
 }
 
-// That counting and clocking one call takes.
-double measure_call() {
-  constexpr uint32_t kCalls = 20'000;
-  Profiler profiler({.clock = true});
-  const auto start = std::chrono::steady_clock::now();
-  for (uint32_t i = 0; i < kCalls; ++i) profiler.call(Stage::kIntersect, i % 8, 4096, 4096);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / kCalls;
+// Of all paths, at the pace of those in calm waves; if there were none, of all.
+double calm_seconds(const StageCounter& c) {
+  if (c.calm_paths == 0) return seconds_of(c.nanoseconds);
+  return seconds_of(c.calm_nanoseconds) * static_cast<double>(c.paths) / static_cast<double>(c.calm_paths);
 }
 
 StageWork work_of(const StageCounter& c) {
@@ -59,7 +72,7 @@ double bytes_of(Stage stage, const std::array<StageCounter, kStageCount>& bounce
   const auto counter = [&](Stage s) -> const StageCounter& { return bounce[static_cast<size_t>(s)]; };
   const KernelFields& fields = stage_fields(stage);
   double moved = (words(fields.reads) + words(fields.writes)) * static_cast<double>(counter(stage).lanes);
-  if (stage == Stage::kSort) {  // what retires without being an emitter's goes to kFinished
+  if (stage == Stage::kSort) {  // what retires at its own bounce, not having met an emitter, went to kFinished
     const auto finished = static_cast<double>(counter(Stage::kRetire).paths - counter(Stage::kEmission).paths);
     moved -= 2.0 * (words("KEPT") - kRetiredFields) * finished;
   }
@@ -70,23 +83,42 @@ StageReport report_stage(Stage stage, const std::vector<Profile>& runs) {
   const KernelFields& fields = stage_fields(stage);
   const auto i = static_cast<size_t>(stage);
   StageReport report{kStageNames[i], words(fields.reads), words(fields.writes), work_of(runs[0].total(stage)), {}, {}};
+  std::vector<double> run_seconds(runs.size());
   for (size_t b = 0; b < runs[0].bounces.size(); ++b) {
+    std::vector<double> seconds;
+    for (size_t run = 0; run < runs.size(); ++run) {
+      seconds.push_back(calm_seconds(runs[run].bounces[b][i]));
+      run_seconds[run] += seconds.back();
+    }
     StageWork work = work_of(runs[0].bounces[b][i]);
-    uint64_t nanoseconds = UINT64_MAX;
-    for (const Profile& run : runs) nanoseconds = std::min(nanoseconds, run.bounces[b][i].nanoseconds);
-    work.seconds = seconds_of(nanoseconds);
+    work.seconds = median(seconds);
     work.bytes = bytes_of(stage, runs[0].bounces[b]);
     report.total.seconds += work.seconds;
     report.total.bytes += work.bytes;
     report.bounces.push_back(work);
   }
   while (!report.bounces.empty() && report.bounces.back().calls == 0) report.bounces.pop_back();
-  for (const Profile& run : runs) {
-    const StageCounter all = run.total(stage);
-    report.run_ns.push_back(static_cast<double>(all.nanoseconds) /
-                            static_cast<double>(std::max<uint64_t>(all.paths, 1)));
+  for (const double seconds : run_seconds) {
+    report.run_ns.push_back(1e9 * seconds / static_cast<double>(std::max<uint64_t>(report.total.paths, 1)));
   }
   return report;
+}
+
+// What the clocks tell of themselves.
+void set_clock_figures(ProfileReport& report, const std::vector<Profile>& runs) {
+  Profile all;
+  for (const Profile& run : runs) all.add(run);
+  uint64_t calls = 0, calm_nanoseconds = 0;
+  for (int i = 0; i < kStageCount; ++i) {
+    const StageCounter stage = all.total(static_cast<Stage>(i));
+    calls += stage.calls;
+    calm_nanoseconds += stage.calm_nanoseconds;
+  }
+  report.calm_waves = static_cast<double>(all.calm_waves) / static_cast<double>(all.waves);
+  if (all.calm_waves > 0) {
+    report.between_stages = 1 - seconds_of(calm_nanoseconds) / seconds_of(all.calm_wave_nanoseconds);
+  }
+  report.clock_seconds = clock_seconds(all.waves, calls) / static_cast<double>(runs.size());
 }
 
 // 1, 2, 3, 4, 6, 8, 12, ... and n.
@@ -123,7 +155,7 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
   run_once(plan, false);
 
   std::vector<Profile> profiles;
-  std::vector<double> between, outside;
+  std::vector<double> outside;
   for (uint32_t i = 0; i < options.repeat; ++i) {
     options.show(print("profiling  %u of %u", i + 1, options.repeat));
     for (const bool clock : {i % 2 == 0, i % 2 != 0}) {
@@ -132,10 +164,8 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
       (clock ? report.cpu_seconds : report.cpu_seconds_unclocked).push_back(run.cpu_seconds);
       if (!clock) continue;
       report.threads = std::max(report.threads, run.result.stats.threads);
-      const double all = run.result.stats.threads * run.result.stats.seconds;
-      const double in_waves = seconds_of(run.result.profile.wave_nanoseconds);
-      between.push_back((in_waves - stage_seconds(run.result.stats)) / all);
-      outside.push_back(1 - in_waves / all);
+      outside.push_back(1 - seconds_of(run.result.profile.wave_nanoseconds) /
+                                (run.result.stats.threads * run.result.stats.seconds));
       profiles.push_back(std::move(run.result.profile));
     }
   }
@@ -146,13 +176,12 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
   report.bounce_rays = profiles[0].bounce_rays;
   report.shadow_rays = profiles[0].shadow_rays;
   report.bounce_limit = kProfiledBounces;
-  report.between_stages = median(between);
-  report.outside_waves = median(outside);
-  report.call_seconds = measure_call();
   for (int i = 0; i < kStageCount; ++i) {
     StageReport stage = report_stage(static_cast<Stage>(i), profiles);
     if (stage.total.calls > 0) report.stages.push_back(std::move(stage));
   }
+  set_clock_figures(report, profiles);
+  report.outside_waves = median(outside);
   if (options.scaling) report.scaling = measure_scaling(plan, options);
   return report;
 }

@@ -14,11 +14,7 @@ StageWork ProfileReport::bounce_total(size_t bounce) const {
   return sum;
 }
 
-double ProfileReport::overhead_by_count() const {
-  uint64_t calls = 0;
-  for (const StageReport& stage : stages) calls += stage.total.calls;
-  return share(static_cast<double>(calls) * call_seconds);
-}
+double ProfileReport::overhead_by_count() const { return share(clock_seconds); }
 
 std::array<double, 3> ProfileReport::overhead_by_turns() const {
   std::vector<double> shares;

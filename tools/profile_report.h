@@ -21,7 +21,7 @@ struct StageWork {
   // That all lanes move, by the model that each moves every field listed once, and the sort of a finished path only what
   // retires. Reads of the scene and the film are not in it.
   double bytes = 0;
-  // Thread time: at a bounce, the least of the runs, which is the one least disturbed by what else the machine does.
+  // Thread time: at a bounce the median of the runs, each by the time of a path in calm waves (see StageCounter).
   double seconds = 0;
 
   double ns_per_path() const { return paths > 0 ? 1e9 * seconds / static_cast<double>(paths) : 0; }
@@ -46,7 +46,7 @@ struct StageReport {
   uint32_t written_words = 0;
   StageWork total;                 // seconds and bytes: sums over bounces
   std::vector<StageWork> bounces;  // [bounce]; those where the stage did nothing have no calls
-  std::vector<double> run_ns;      // ns per path of each run, over all bounces
+  std::vector<double> run_ns;      // ns per path of each run in calm waves, over all bounces
 
   bool traces() const { return total.rays > 0; }
 };
@@ -68,10 +68,10 @@ struct ProfileReport {
   // Of each run, and of renders without the clock that took turns with them.
   std::vector<double> seconds, seconds_unclocked;          // wall clock
   std::vector<double> cpu_seconds, cpu_seconds_unclocked;  // of all threads
-  // Shares of the thread time, medians of the runs; the rest is in stages.
-  double between_stages = 0;
-  double outside_waves = 0;
-  double call_seconds = 0;  // that counting and clocking one call takes
+  double calm_waves = 1;                                   // share of all runs' waves
+  double between_stages = 0;                               // share of the time of calm waves
+  double outside_waves = 0;                                // share of thread time, median of the runs
+  double clock_seconds = 0;  // thread time that counting and clocking take of a run, by the number of calls
 
   std::vector<StageReport> stages;    // those that ran
   std::vector<ScalingPoint> scaling;  // by threads; empty if it was not asked for

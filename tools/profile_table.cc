@@ -49,7 +49,7 @@ std::string bounces_table(const ProfileReport& r) {
                   paths > 0 ? 1e9 * all.seconds / paths : 0, 100 * r.share(all.seconds), 100 * all.live_lanes(),
                   lengths_of(all).c_str());
   }
-  return text + "Of all stages; paths: those that intersect gets. Bounce 0 holds generate and accumulate too.\n";
+  return text + "Of all stages; paths: those that intersect gets. Bounce 0 also holds what runs once a wave.\n";
 }
 
 std::string matrix(const ProfileReport& r) {
@@ -83,20 +83,20 @@ std::string scaling_table(const ProfileReport& r) {
 std::string profile_summary(const ProfileReport& r) {
   const auto [fastest, slowest] = std::minmax_element(r.seconds.begin(), r.seconds.end());
   const double seconds = median(r.seconds), samples = static_cast<double>(r.samples);
-  const double all = r.threads * seconds;
+  const double in_stages = 1e9 * r.stage_seconds() / std::max(samples, 1.0);
   const auto [low, middle, high] = r.overhead_by_turns();
   std::string text = print("%s: %s samples, %s rays\n", r.scene.c_str(), short_count(samples).c_str(),
                            short_count(static_cast<double>(r.rays())).c_str());
   text += print("%s, %s, %u thread%s\n", r.cpu.c_str(), r.isa.c_str(), r.threads, r.threads == 1 ? "" : "s");
-  text += print("%zu run%s: median %.3f s (%.3f to %.3f), %s rays/s, %.1f ns of thread time a sample\n",
+  text += print("%zu run%s: median %.3f s (%.3f to %.3f), %s rays/s; %.1f %% of the thread time outside of waves\n",
                 r.seconds.size(), r.seconds.size() == 1 ? "" : "s", seconds, *fastest, *slowest,
-                short_count(static_cast<double>(r.rays()) / std::max(seconds, 1e-9)).c_str(),
-                1e9 * all / std::max(samples, 1.0));
-  text += print("thread time: %.1f %% in stages, %.1f %% between them, %.1f %% outside of waves (film, waiting)\n",
-                100 * (1 - r.between_stages - r.outside_waves), 100 * r.between_stages, 100 * r.outside_waves);
+                short_count(static_cast<double>(r.rays()) / std::max(seconds, 1e-9)).c_str(), 100 * r.outside_waves);
   text += print(
-      "profiling: %.2f %% by the number of calls, %.0f ns each; measured by turns %+.1f %% (quartiles %+.1f, %+.1f)\n",
-      100 * r.overhead_by_count(), 1e9 * r.call_seconds, 100 * middle, 100 * low, 100 * high);
+      "a sample takes %.1f ns in stages and %.1f ns between (in calm waves, whose thread never waited: %.1f %%)\n",
+      in_stages, in_stages * r.between_stages / (1 - r.between_stages), 100 * r.calm_waves);
+  text += print(
+      "profiling costs %.2f %% by the number of calls; %.1f %% (quartiles %.1f, %.1f) in turns with renders without\n",
+      100 * r.overhead_by_count(), 100 * middle, 100 * low, 100 * high);
   return text;
 }
 
