@@ -38,7 +38,7 @@ def scenes_of(arguments, shipped=None):
     given = arguments.scenes
     if given is None:
         return in_folder(lanewise.COURSE) + (lanewise.SHIPPED if shipped is None else shipped)
-    return [scene for path in given for scene in (in_folder(path) if path.is_dir() else [path])]
+    return [scene for path in given for scene in (in_folder(path) if path.is_dir() else [path.resolve()])]
 
 
 def view_flags(scene):
