@@ -18,13 +18,18 @@ constexpr int count_fields() {
   return n;
 }
 
+constexpr uint32_t padded(uint32_t capacity) { return round_up_to_lanes(capacity) + 2 * kLanes * kBinCount; }
+
 }  // namespace
 
-PathBuffer::PathBuffer(uint32_t capacity)
-    : capacity_(round_up_to_lanes(capacity)), padded_(capacity_ + 2 * kLanes * kBinCount) {
-  const uint32_t stride = padded_ + kStagger;
+size_t PathBuffer::bytes(uint32_t capacity) {
   constexpr uint32_t kResults = 3;
-  memory_.assign(size_t{stride} * (count_fields() + kResults), 0.0f);
+  return sizeof(float) * (padded(capacity) + kStagger) * (count_fields() + kResults);
+}
+
+PathBuffer::PathBuffer(uint32_t capacity) : capacity_(round_up_to_lanes(capacity)), padded_(padded(capacity)) {
+  const uint32_t stride = padded_ + kStagger;
+  memory_.assign(bytes(capacity) / sizeof(float), 0.0f);
   float* next = memory_.data();
 #define LANEWISE_PLACE(type, name, meaning)    \
   state_.name = reinterpret_cast<type*>(next); \

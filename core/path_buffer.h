@@ -13,6 +13,9 @@ class PathBuffer {
   // Room for `capacity` paths (a multiple of kLanes) and the padding of every bin; all slots hold the dummy path.
   explicit PathBuffer(uint32_t capacity);
 
+  // Of memory, that such a buffer takes.
+  static size_t bytes(uint32_t capacity);
+
   PathState& state() { return state_; }
   const PathState& state() const { return state_; }
   uint32_t capacity() const { return capacity_; }

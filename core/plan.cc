@@ -76,8 +76,6 @@ class Planner {
  private:
   dvec3 relative(const dvec3& p) const { return p - box_.center(); }
 
-  void say(std::string reason) { plan_.reasons.push_back(std::move(reason)); }
-
   // The file's camera, or the course program's framing: 1.5 diagonals back from the centre along the camera's axis,
   // with a focal length of 600 / (2 tan(vfov / 2)) pixels whatever the resolution.
   void place_camera() {
@@ -142,6 +140,7 @@ class Planner {
       bool smooth = false;
       for (size_t t = 0; t < mesh.triangles.size(); ++t) smooth |= add_triangle(mesh, t);
       any_smooth |= smooth;
+      plan_.groups.push_back({mesh.name, first, plan_.triangles - first, is_flat_mesh_[m], smooth});
       const std::span<const FlatTriangle> added = std::span(corners_).subspan(first);
       in_tree_.resize(plan_.triangles, !is_flat_mesh_[m]);
       if (is_flat_mesh_[m] && smooth) {
@@ -157,9 +156,6 @@ class Planner {
       if (expendable_) expendable_->meshes[m] = Mesh();
     }
     if (!any_smooth) plan_.prim_normals = AlignedVector<float>();
-    if (plan_.triangles > 0) {
-      say(any_smooth ? "shading normals: interpolated" : "shading normals: every face is flat, none stored");
-    }
   }
 
   void reserve() {
@@ -224,17 +220,13 @@ class Planner {
   void build_trees() {
     std::erase_if(corners_, [&](const FlatTriangle& t) { return !in_tree_[t.prim]; });
     plant_triangles(plan_, corners_);
-    say("flat lists, tested by whole vectors of rays: " + std::to_string(plan_.flat_quads.size()) +
-        " parallelograms (" + std::to_string(plan_.blocking_quads) + " of them can block light), " +
-        std::to_string(plan_.flat_triangles.size()) + " triangles (" + std::to_string(plan_.blocking_triangles) + ")");
-    say(std::to_string(corners_.size()) + " triangles in an 8-wide tree");
     const bool few = spheres_.size() <= kMaxFlatSpheres && plan_.settings.accel == Accel::kPlan;
     if (few) {
       plan_.flat_spheres = spheres_;
     } else {
       plant_spheres(plan_, spheres_);
     }
-    say(std::to_string(spheres_.size()) + " spheres in " + (few ? "a flat list" : "an 8-wide tree"));
+    if (plan_.spheres > 0) plan_.groups.push_back({"spheres", plan_.triangles, plan_.spheres, few});
   }
 
   void choose_stages() {
@@ -244,15 +236,9 @@ class Planner {
         {kMirror, Stage::kCount, Stage::kShadeMirror},
         {kGlass, Stage::kCount, Stage::kShadeGlass},
     };
-    std::string names;
     for (const ShadeStages& stages : kAll) {
-      if (!has_bin_[stages.bin]) continue;
-      plan_.shade_stages.push_back(stages);
-      names += std::string(names.empty() ? "" : ", ") + kStageNames[static_cast<int>(stages.shade)];
+      if (has_bin_[stages.bin]) plan_.shade_stages.push_back(stages);
     }
-    say("materials: " + (names.empty() ? "none scatters" : names));
-    say(std::to_string(plan_.lights.size()) + (plan_.lights.size() == 1 ? " light" : " lights") +
-        ", each sampled at every vertex");
   }
 
   // Every light sample of a vertex draws a set of its own.

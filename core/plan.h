@@ -134,6 +134,15 @@ struct ShadeStages {
   Stage shade;
 };
 
+// A mesh's triangles or all spheres: primitives first .. first + size - 1, and where rays look for them.
+struct PlanGroup {
+  std::string name;
+  uint32_t first = 0;
+  uint32_t size = 0;
+  bool flat = false;    // in the flat lists, otherwise in a tree
+  bool smooth = false;  // some shading normal is not its face's
+};
+
 struct Plan {
   Settings settings;
   double center[3] = {0, 0, 0};  // scene position = plan position + center
@@ -167,7 +176,7 @@ struct Plan {
   AlignedVector<SphereBlock> sphere_blocks;
 
   std::vector<ShadeStages> shade_stages;  // only those that the scene needs, in bin order
-  std::vector<std::string> reasons;       // what was chosen and why, a line each
+  std::vector<PlanGroup> groups;          // every primitive is in one
 };
 
 // Compiles the scene for these settings. Throws Error for what a plan cannot hold (more than 2^31 primitives).

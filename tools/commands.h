@@ -9,6 +9,7 @@ namespace lanewise {
 // command_line: as typed, to be kept with what a render writes.
 void add_render_command(CLI::App& app, const std::string& command_line);
 void add_profile_command(CLI::App& app, const std::string& command_line);
+void add_plan_command(CLI::App& app, const std::string& command_line);
 void add_compare_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 

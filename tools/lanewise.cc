@@ -28,6 +28,7 @@ void run(int argc, char** argv) {
   app.footer("lanewise COMMAND --help tells more.");
   add_render_command(app, quoted_command_line(argc, argv));
   add_profile_command(app, quoted_command_line(argc, argv));
+  add_plan_command(app, quoted_command_line(argc, argv));
   add_compare_command(app);
   add_verify_command(app);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "core/explain.h"
 #include "core/render.h"
 #include "core/stage_fields.h"
 #include "core/stats.h"
@@ -171,7 +172,7 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
   }
   report.cpu = cpu_name();
   report.isa = chosen_isa();
-  report.plan = plan.reasons;
+  for (const Decision& d : explain(plan)) report.plan.push_back(one_line(d));
   report.samples = report.camera_rays = profiles[0].samples;
   report.bounce_rays = profiles[0].bounce_rays;
   report.shadow_rays = profiles[0].shadow_rays;

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/explain.h"
 #include "core/file.h"
 #include "core/image_io.h"
 #include "core/plan.h"
@@ -105,7 +106,8 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   if (!o.rate.empty()) {
     write_image(o.rate, rate_picture(o.rate, result.samples, result.image.width, result.image.height));
   }
-  const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line, plan.reasons};
+  const std::vector<Decision> decisions = explain(plan);
+  const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line, decisions};
   if (!o.stats.empty()) write_file(o.stats, stats_json(report));
 
   progress.clear();

@@ -187,6 +187,9 @@ void add_scene_options(CLI::App& app, RenderOptions& o) {
   add_material_flags(app, o);
   group("Machine");
   add_machine_flags(app, o);
+  group("Advanced");
+  add_choice<Accel>(app, "--accel", o.settings.accel, {{"plan", Accel::kPlan}, {"tree", Accel::kTree}},
+                    "Where rays look for geometry: as the plan chooses; all in trees, to measure them");
   group("Not yet supported");
   add_not_yet_flags(app);
 }

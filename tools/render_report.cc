@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "tools/plan_report.h"
 #include "tools/text.h"
 #include "tools/version.h"
 
@@ -67,7 +68,7 @@ std::string stats_json(const RenderReport& r) {
       {"converged", s.converged},
       {"paths_by_length", s.paths_by_length},
   };
-  json["plan"] = r.plan_reasons;
+  json["plan"] = decisions_json(r.plan);
   json["stages"] = nlohmann::ordered_json::array();
   for (const StageStats& stage : s.stages) {
     json["stages"].push_back({{"name", stage.name},

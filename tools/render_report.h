@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/explain.h"
 #include "core/render.h"
 #include "tools/render_options.h"
 
@@ -21,12 +22,12 @@ struct RenderReport {
   RenderSeconds seconds;
   std::string isa;
   std::string command_line;
-  const std::vector<std::string>& plan_reasons;
+  const std::vector<Decision>& plan;
 };
 
 // For --stats: scene, command, version, width, height, spp, max_depth, seed, threads, isa, wave, seconds {load, plan,
 // render, write}, samples, rays {camera, bounce, shadow, total}, rays_per_second, peak_rss_bytes, invalid_samples,
-// paths_by_length [], stages [{name, calls, paths, seconds, lanes_live}] and plan [what it chose and why].
+// paths_by_length [], stages [{name, calls, paths, seconds, lanes_live}] and plan [as decisions_json() gives it].
 std::string stats_json(const RenderReport& report);
 
 // For the terminal: a few lines.

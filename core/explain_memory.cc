@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "core/explain_topics.h"
+#include "core/film.h"
+#include "core/path_buffer.h"
+#include "core/stats.h"
+
+namespace lanewise {
+namespace {
+
+template <class Vector>
+size_t bytes_of(const Vector& v) {
+  return v.size() * sizeof(v[0]);
+}
+
+class Memory {
+ public:
+  explicit Memory(std::vector<Decision>& out) : out_(out) {}
+
+  // per: the name of the share of each of n things, or null.
+  void add(const std::string& subject, const std::string& choice, const std::string& reason, size_t bytes,
+           const char* per = nullptr, size_t n = 1) {
+    Decision d{"memory", subject, choice, reason, {{"bytes", static_cast<double>(bytes), FigureUnit::kBytes}}};
+    if (per) d.figures.push_back({per, static_cast<double>(bytes) / static_cast<double>(n), FigureUnit::kBytes});
+    out_.push_back(std::move(d));
+    sum_ += bytes;
+  }
+  size_t sum() const { return sum_; }
+
+ private:
+  std::vector<Decision>& out_;
+  size_t sum_ = 0;
+};
+
+// Returns its bytes.
+size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
+  Memory memory(out);
+  const size_t primitives = std::max<size_t>(size_t{plan.triangles} + plan.spheres, 1);
+  const auto add = [&](const char* subject, const char* choice, const char* reason, size_t bytes) {
+    memory.add(subject, choice, reason, bytes, "per_primitive", primitives);
+  };
+  const size_t flat = bytes_of(plan.flat_quads) + bytes_of(plan.flat_triangles) + bytes_of(plan.flat_spheres);
+  const size_t nodes = bytes_of(plan.triangle_tree.nodes) + bytes_of(plan.sphere_tree.nodes);
+  const bool smooth = !plan.prim_normals.empty();
+  if (flat > 0) add("flat lists", "in order", "read by every vector of rays", flat);
+  if (nodes > 0) {
+    add("trees", "nodes, leaf blocks", "vertices lie in the leaf blocks",
+        nodes + bytes_of(plan.triangle_blocks) + bytes_of(plan.sphere_blocks));
+  }
+  add("primitives", "by index", "fetched for the nearest hit alone",
+      bytes_of(plan.prim_shape) + bytes_of(plan.prim_err) + bytes_of(plan.prim_material) + bytes_of(plan.prim_bin) +
+          bytes_of(plan.prim_light));
+  add("corner normals", smooth ? "by index" : "none stored",
+      smooth ? "some faces are smooth: 9 floats a triangle" : "every face is flat", bytes_of(plan.prim_normals));
+  add("lights, materials", "by index", "",
+      bytes_of(plan.materials) + bytes_of(plan.lights) + bytes_of(plan.light_patches) + bytes_of(plan.light_table));
+  add("scene", "all of the above", "", memory.sum());
+  return memory.sum() / 2;
+}
+
+}  // namespace
+
+void explain_memory(const Plan& plan, std::vector<Decision>& out) {
+  const size_t scene = add_scene(plan, out);
+  const Settings& settings = plan.settings;
+  const Window window = settings.window();
+  const size_t pixels = size_t{settings.width} * settings.height;
+  const size_t picture = (3 * sizeof(float) + sizeof(uint32_t)) * window.width * window.height;
+  const bool noise = settings.noise > 0;
+  // Those of --noise are in two halves, with an estimate of each.
+  const size_t sums =
+      noise ? 2 * (sizeof(PixelSums) + sizeof(std::array<double, 3>)) : sizeof(PixelSums) + sizeof(uint32_t);
+  const size_t threads = thread_count(settings);
+  Memory memory(out);
+  memory.add("film", noise ? "two halves" : "sums, picture",
+             noise ? "each ends the other's estimate" : "sums of doubles", sums * pixels + picture, "per_pixel",
+             pixels);
+  memory.add("paths", count_of(threads, "thread"),
+             "three buffers of " + std::to_string(settings.wave) +
+                 " paths: two that the sort moves between, one for those that met a light",
+             threads * 3 * PathBuffer::bytes(settings.wave), "per_thread", threads);
+  memory.add("all", "scene, film, paths", "without stacks, the program, and the loader's peak", scene + memory.sum());
+}
+
+}  // namespace lanewise

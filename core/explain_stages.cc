@@ -1,0 +1,182 @@
+#include <algorithm>
+
+#include "core/explain_topics.h"
+#include "kernels/kernels.h"
+
+namespace lanewise {
+namespace {
+
+const char* material_name(Bin bin) {
+  switch (bin) {
+    case kDiffuse:
+      return "diffuse surface";
+    case kMicrofacet:
+      return "microfacet metal";
+    case kMirror:
+      return "mirror";
+    case kGlass:
+      return "glass";
+    case kEmitter:
+    case kFinished:
+    case kBinCount:
+      break;
+  }
+  return "";
+}
+
+bool has_bin(const Plan& plan, Bin bin) {
+  return std::ranges::any_of(plan.shade_stages, [bin](const ShadeStages& s) { return s.bin == bin; });
+}
+
+bool has_rough(const Plan& plan) { return has_bin(plan, kDiffuse) || has_bin(plan, kMicrofacet); }
+bool has_delta(const Plan& plan) { return has_bin(plan, kMirror) || has_bin(plan, kGlass); }
+
+std::string why_nothing_scatters(const Plan& plan) {
+  if (plan.settings.max_depth == 0) return "-m 0: no path scatters";
+  return plan.shade_stages.empty() ? "nothing in the scene scatters light" : "";
+}
+
+std::string why_no_light_samples(const Plan& plan) {
+  if (const std::string why = why_nothing_scatters(plan); !why.empty()) return why;
+  if (plan.settings.direct == Direct::kBsdf) return "--direct bsdf: lights are found by chance";
+  if (!has_rough(plan)) return "only mirrors and glass, which take no light samples";
+  return plan.lights.empty() ? "no light" : "";
+}
+
+std::string why_no_material(const Plan& plan, Bin bin) {
+  if (const std::string why = why_nothing_scatters(plan); !why.empty()) return why;
+  return has_bin(plan, bin) ? "" : std::string("no ") + material_name(bin);
+}
+
+std::string why_no_light_stage(const Plan& plan, Bin bin) {
+  const std::string why = why_no_material(plan, bin);
+  return why.empty() ? why_no_light_samples(plan) : why;
+}
+
+// Why a stage that runs is the way it is.
+std::string why_so(const Plan& plan, Stage stage) {
+  const Settings& settings = plan.settings;
+  const bool trees = !plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty();
+  switch (stage) {
+    case Stage::kGenerate:
+      return settings.lens_radius > 0 ? "a thin lens: a point of it for every path" : "a pinhole: no lens is sampled";
+    case Stage::kIntersect:
+    case Stage::kOcclude:
+    case Stage::kGatherEmission:
+      if (!trees) return "flat lists alone: no ray leaves its vector";
+      return plan.flat_quads.empty() && plan.flat_triangles.empty() && plan.flat_spheres.empty()
+                 ? "trees alone"
+                 : "flat lists first, then the trees for rays that meet their bounds";
+    case Stage::kSort:
+      return count_of(plan.shade_stages.size(), "material") + ", emitters, finished: a contiguous bin each";
+    case Stage::kEmission:
+      return "once a wave, over the paths of all bounces that met a light";
+    case Stage::kSurface:
+      return plan.prim_normals.empty() ? "flat faces alone: no corner normals to fetch and mix"
+                                       : "corner normals, mixed by barycentric weights";
+    case Stage::kSampleLight:
+      return count_of(plan.lights.size(), "light") + ", " + count_of(settings.light_samples, "sample") +
+             " each: " + count_of(plan.lights.size() * settings.light_samples, "call") + " a bounce";
+    case Stage::kSampleHemisphere:
+      return "--direct hemisphere, " + count_of(settings.light_samples, "sample") + " a vertex";
+    case Stage::kRoulette:
+      return "from bounce " + std::to_string(kRouletteBounce) + " on";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::string why_left_out(const Plan& plan, Stage stage) {
+  const bool hemisphere = plan.settings.direct == Direct::kHemisphere;
+  switch (stage) {
+    case Stage::kEmission:
+      return plan.lights.empty() ? "no light" : "";
+    case Stage::kSurface:
+      return why_nothing_scatters(plan);
+    case Stage::kSampleLight:
+    case Stage::kOcclude:
+      if (hemisphere) return "--direct hemisphere";
+      return why_no_light_samples(plan);
+    case Stage::kSampleHemisphere:
+    case Stage::kGatherEmission:
+      if (!hemisphere) return "only for --direct hemisphere";
+      return why_no_light_samples(plan);
+    case Stage::kLightDiffuse:
+      return why_no_light_stage(plan, kDiffuse);
+    case Stage::kLightMicrofacet:
+      return why_no_light_stage(plan, kMicrofacet);
+    case Stage::kShadeDiffuse:
+      return why_no_material(plan, kDiffuse);
+    case Stage::kShadeMicrofacet:
+      return why_no_material(plan, kMicrofacet);
+    case Stage::kShadeMirror:
+      return why_no_material(plan, kMirror);
+    case Stage::kShadeGlass:
+      return why_no_material(plan, kGlass);
+    case Stage::kRoulette:
+      if (const std::string why = why_nothing_scatters(plan); !why.empty()) return why;
+      if (plan.settings.max_depth > kRouletteBounce) return "";
+      return "-m " + std::to_string(plan.settings.max_depth) + ": paths end before bounce " +
+             std::to_string(kRouletteBounce);
+    default:
+      return "";
+  }
+}
+
+void explain_stages(const Plan& plan, std::vector<Decision>& out) {
+  for (int i = 0; i < kStageCount; ++i) {
+    const Stage stage = static_cast<Stage>(i);
+    const std::string why = why_left_out(plan, stage);
+    const bool runs = why.empty();
+    out.push_back({"stages", kStageNames[i], runs ? "runs" : "left out", runs ? why_so(plan, stage) : why, {}});
+  }
+}
+
+void explain_light(const Plan& plan, std::vector<Decision>& out) {
+  uint32_t single = 0, spheres = 0;
+  for (const PlanLight& light : plan.lights) {
+    single += light.patches == 1;
+    spheres += light.patches == 0;
+  }
+  const double lights = static_cast<double>(plan.lights.size());
+  std::string reason = "each has its samples: no light is selected";
+  if (single + spheres < plan.lights.size())
+    reason = "each has its samples; of a light of many patches, one is searched";
+  out.push_back({"light",
+                 "lights",
+                 count_of(plan.lights.size(), "light"),
+                 reason,
+                 {{"lights", lights},
+                  {"spheres", double{1} * spheres},
+                  {"patches", static_cast<double>(plan.light_patches.size())}}});
+  if (plan.shade_stages.empty()) return;
+  const bool rough = has_rough(plan), delta = has_delta(plan);
+  out.push_back({"light",
+                 "vertices",
+                 !rough  ? "no light samples"
+                 : delta ? "light samples at some"
+                         : "light samples at all",
+                 !rough  ? "only mirrors and glass"
+                 : delta ? "mirrors and glass are bins behind the others"
+                         : "no mirror, no glass",
+                 {}});
+}
+
+// What the sort of a wave moves: see Wave's constructor.
+void explain_state(const Plan& plan, std::vector<Decision>& out) {
+  const bool flat = plan.prim_normals.empty();
+  const uint32_t left = flat ? words("u v") : 0, moved = words("KEPT") - left;
+  const auto figures = [](uint32_t fields) {
+    return std::vector<Figure>{{"fields", double{1} * fields}, {"per_path", 4.0 * fields, FigureUnit::kBytes}};
+  };
+  out.push_back({"state", "living path", "moved by the sort", "the next stages read them", figures(moved)});
+  out.push_back({"state", "finished path", "moved by the sort", "slot and radiance: all that retire reads",
+                 figures(kRetiredFields)});
+  if (left > 0) {
+    out.push_back({"state", "u, v", "left in place", "no corner normals to mix with them", figures(left)});
+  }
+}
+
+}  // namespace lanewise
