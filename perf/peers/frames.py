@@ -171,7 +171,7 @@ def headlines(rows):
 
 
 def draw(rows, peers, command):
-    figure, axis = plt.subplots(figsize=(8, 1.6 + 0.42 * len(rows)))
+    figure, axis = plt.subplots(figsize=(8, 2 + 0.42 * len(rows)))
     names = list(peers)
     for k, name in enumerate(names):
         mine = [(y, row['times_faster'][name]) for y, row in enumerate(rows) if name in row['times_faster']]
@@ -190,11 +190,11 @@ def draw(rows, peers, command):
     axis.set_xticks([t for t in ticks if t < 1.25 * top], [f'{t} x' for t in ticks if t < 1.25 * top])
     axis.minorticks_off()
     axis.set_yticks(range(len(rows)), [f'{row["scene"]}, {row["samples"]} spp' for row in rows])
-    axis.invert_yaxis()
+    axis.set_ylim(len(rows) - 0.5, -0.5)
     axis.set_xlabel('seconds of the peer / seconds of Lanewise (median and range over rounds)')
     axis.set_title('How many times faster Lanewise renders the same samples', fontsize=11)
-    figure.legend(fontsize=8, loc='lower center', ncol=4, bbox_to_anchor=(0.5, 0.03))
-    figure.tight_layout(rect=(0, 0.09, 1, 1))
+    figure.legend(fontsize=8, loc='lower center', ncol=4, bbox_to_anchor=(0.5, 0.04))
+    figure.tight_layout(rect=(0, 0.13, 1, 1))
     study.save_chart(figure, 'frames', command)
 
 
