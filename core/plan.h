@@ -148,7 +148,8 @@ struct Plan {
   double center[3] = {0, 0, 0};  // scene position = plan position + center
   PlanCamera camera;
 
-  // Primitives 0 .. triangles - 1 are triangles, then come the spheres.
+  // Primitives 0 .. triangles - 1 are triangles, then come the spheres. Bytes a triangle: 32 in the arrays below, 36 more
+  // with shading normals, and some 60 in the tree (see tests/bvh_test.cc): nodes 7, blocks 53, which are six of eight full.
   uint32_t triangles = 0;
   uint32_t spheres = 0;
   AlignedVector<float>

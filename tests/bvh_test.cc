@@ -10,6 +10,7 @@
 #include <random>
 #include <span>
 
+#include "core/plan.h"
 #include "core/scene.h"
 #include "scenes/builtin.h"
 
@@ -171,6 +172,14 @@ TEST_CASE("bvh: cost of a mesh, and of a mesh in a room") {
   const Scene scene = load_builtin("builtin:dense:10000");
   CHECK(sah_cost(build_bvh(boxes_of(scene, 1000))) < 11.4);
   CHECK(sah_cost(build_bvh(boxes_of(scene, 0))) < 5.8);
+}
+
+TEST_CASE("bvh: bytes a triangle") {
+  const std::vector<Box> boxes = boxes_of(load_builtin("builtin:dense:10000"), 0);
+  const Bvh bvh = build_bvh(boxes);
+  const size_t blocks = bvh.leaf_prims.size() / kLeafWidth;
+  CHECK(bvh.nodes.size() * sizeof(BvhNode) < 8 * boxes.size());
+  CHECK(blocks * sizeof(TriangleBlock) < 56 * boxes.size());
 }
 
 TEST_CASE("bvh: degenerate boxes") {
