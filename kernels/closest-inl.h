@@ -22,17 +22,14 @@ HWY_BEFORE_NAMESPACE();
 namespace lanewise {
 namespace HWY_NAMESPACE {
 
-// Nearest so far; u = v / det and v = w / det wait until the end for their divisions.
+// Nearest so far; u = v / det and v = w / det wait until the end for their divisions. Triangles come last: what has no
+// barycentric weights then leaves v = w = 0 and det = 1 as they are.
 struct Nearest {
   VF t, v, w, det;
   VI prim;
 
-  // A hit without barycentric weights takes the place of the best one where `nearer` says so.
   HWY_INLINE void Take(MF nearer, VF hit_t, VI hit_prim) {
     t = hn::IfThenElse(nearer, hit_t, t);
-    v = hn::IfThenZeroElse(nearer, v);
-    w = hn::IfThenZeroElse(nearer, w);
-    det = hn::IfThenElse(nearer, Splat(1.0f), det);
     prim = hn::IfThenElse(hn::RebindMask(DI(), nearer), hit_prim, prim);
   }
 };
@@ -62,11 +59,10 @@ HWY_INLINE void NearestFlatTriangle(const Plan& plan, const Vec3& o, const Vec3&
     const VF t = hn::Div(test.depth, test.det);
     const VI prim = hn::Set(DI(), static_cast<int32_t>(triangle.prim));
     const MF hit = hn::And(hn::And(test.inside, hn::Gt(t, hn::Zero(d))), Before(d, t, prim, best.t, best.prim));
-    best.t = hn::IfThenElse(hit, t, best.t);
+    best.Take(hit, t, prim);
     best.v = hn::IfThenElse(hit, test.weight[1], best.v);
     best.w = hn::IfThenElse(hit, test.weight[2], best.w);
     best.det = hn::IfThenElse(hit, test.det, best.det);
-    best.prim = hn::IfThenElse(hn::RebindMask(DI(), hit), prim, best.prim);
   }
 }
 
@@ -191,14 +187,15 @@ HWY_INLINE void ClosestHits(const Plan& plan, const HitArrays& hits, size_t begi
       // A dead lane's limit of 0 lets no hit pass.
       Nearest best{hn::IfThenElseZero(alive, Splat(kInfinity)), zero, zero, Splat(1.0f), hn::Set(DI(), kNoHit)};
       NearestFlatQuad(plan, o, dir, best);
-      NearestFlatTriangle(plan, o, dir, alive, best);
       NearestFlatSphere(plan, o, dir, best);
+      NearestFlatTriangle(plan, o, dir, alive, best);
       triangle_rays.Add(plan.triangle_tree, i, o, dir, best.t, alive);
       sphere_rays.Add(plan.sphere_tree, i, o, dir, best.t, alive);
       const MF none = hn::RebindMask(d, hn::Eq(best.prim, hn::Set(DI(), kNoHit)));
       hn::Store(hn::IfThenElse(none, Splat(kInfinity), best.t), d, hits.t + i);
-      hn::Store(hn::Div(best.v, best.det), d, hits.u + i);
-      hn::Store(hn::Div(best.w, best.det), d, hits.v + i);
+      const bool weighed = !plan.flat_triangles.empty();
+      hn::Store(weighed ? hn::Div(best.v, best.det) : zero, d, hits.u + i);
+      hn::Store(weighed ? hn::Div(best.w, best.det) : zero, d, hits.v + i);
       hn::Store(hn::BitCast(DU(), best.prim), DU(), hits.prim + i);
     }
     if (triangle_rays.size() > 0) WalkNearestTriangle(plan, triangle_rays, hits);
