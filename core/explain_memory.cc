@@ -44,7 +44,7 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
   const size_t flat = bytes_of(plan.flat_quads) + bytes_of(plan.flat_triangles) + bytes_of(plan.flat_spheres);
   const size_t nodes = bytes_of(plan.triangle_tree.nodes) + bytes_of(plan.sphere_tree.nodes);
   const bool smooth = !plan.prim_normals.empty();
-  if (flat > 0) add("flat lists", "in order", "read by every vector of rays", flat);
+  if (flat > 0) memory.add("flat lists", "in order", "read by every vector of rays", flat);
   if (nodes > 0) {
     add("trees", "nodes, leaf blocks", "vertices lie in the leaf blocks",
         nodes + bytes_of(plan.triangle_blocks) + bytes_of(plan.sphere_blocks));
@@ -54,7 +54,8 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
           bytes_of(plan.prim_light));
   add("corner normals", smooth ? "by index" : "none stored",
       smooth ? "some faces are smooth: 9 floats a triangle" : "every face is flat", bytes_of(plan.prim_normals));
-  add("lights, materials", "by index", "",
+  memory.add(
+      "lights, materials", "by index", "",
       bytes_of(plan.materials) + bytes_of(plan.lights) + bytes_of(plan.light_patches) + bytes_of(plan.light_table));
   add("scene", "all of the above", "", memory.sum());
   return memory.sum() / 2;

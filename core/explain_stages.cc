@@ -29,7 +29,6 @@ bool has_bin(const Plan& plan, Bin bin) {
 }
 
 bool has_rough(const Plan& plan) { return has_bin(plan, kDiffuse) || has_bin(plan, kMicrofacet); }
-bool has_delta(const Plan& plan) { return has_bin(plan, kMirror) || has_bin(plan, kGlass); }
 
 std::string why_nothing_scatters(const Plan& plan) {
   if (plan.settings.max_depth == 0) return "-m 0: no path scatters";
@@ -140,27 +139,24 @@ void explain_light(const Plan& plan, std::vector<Decision>& out) {
     single += light.patches == 1;
     spheres += light.patches == 0;
   }
-  const double lights = static_cast<double>(plan.lights.size());
+  const std::string no_samples = why_no_light_samples(plan);
   std::string reason = "each has its samples: no light is selected";
-  if (single + spheres < plan.lights.size())
-    reason = "each has its samples; of a light of many patches, one is searched";
+  if (single + spheres < plan.lights.size()) reason = "each has its samples, on one of its patches by area";
+  if (plan.settings.direct == Direct::kHemisphere) reason = "--direct hemisphere: no light is sampled";
+  if (!no_samples.empty()) reason = no_samples;
   out.push_back({"light",
                  "lights",
                  count_of(plan.lights.size(), "light"),
                  reason,
-                 {{"lights", lights},
+                 {{"lights", static_cast<double>(plan.lights.size())},
                   {"spheres", double{1} * spheres},
                   {"patches", static_cast<double>(plan.light_patches.size())}}});
-  if (plan.shade_stages.empty()) return;
-  const bool rough = has_rough(plan), delta = has_delta(plan);
+  if (!no_samples.empty()) return;
+  const bool delta = has_bin(plan, kMirror) || has_bin(plan, kGlass);
   out.push_back({"light",
                  "vertices",
-                 !rough  ? "no light samples"
-                 : delta ? "light samples at some"
-                         : "light samples at all",
-                 !rough  ? "only mirrors and glass"
-                 : delta ? "mirrors and glass are bins behind the others"
-                         : "no mirror, no glass",
+                 delta ? "light samples at some" : "light samples at all",
+                 delta ? "mirrors and glass are bins behind the others" : "no mirror, no glass",
                  {}});
 }
 

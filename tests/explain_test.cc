@@ -98,6 +98,20 @@ TEST_CASE("explain: why stages are left out") {
   CHECK(why_left_out(make_plan(plain, settings), Stage::kOcclude) == "--direct bsdf: lights are found by chance");
 }
 
+TEST_CASE("explain: which vertices take light samples") {
+  using Kind = Material::Kind;
+  Settings settings = small();
+  const auto choice = [&](const Scene& scene) {
+    const std::vector<Decision> decisions = explain(make_plan(scene, settings));
+    const Decision* decision = find(decisions, "light", "vertices");
+    return decision ? decision->choice : "none";
+  };
+  CHECK(choice(test::test_box()) == "light samples at some");
+  CHECK(choice(without(test::test_box(), {Kind::kMirror, Kind::kGlass})) == "light samples at all");
+  settings.direct = Direct::kBsdf;
+  CHECK(choice(test::test_box()) == "none");
+}
+
 TEST_CASE("explain: figures of geometry are the plan's") {
   for (const Accel accel : {Accel::kPlan, Accel::kTree}) {
     Settings settings = small();
@@ -119,7 +133,7 @@ TEST_CASE("explain: figures of geometry are the plan's") {
     CHECK(figure(*tree, "depth") == plan.triangle_tree.depth);
     CHECK(figure(*tree, "leaf_blocks") == plan.triangle_blocks.size());
     CHECK(figure(*tree, "fill") ==
-          doctest::Approx(static_cast<double>(prims.size()) / (8.0 * static_cast<double>(plan.triangle_blocks.size()))));
+          doctest::Approx(static_cast<double>(prims.size()) / static_cast<double>(8 * plan.triangle_blocks.size())));
     // A ray that meets the bounds visits the root, and on average no more than all there is.
     CHECK(figure(*tree, "node_visits") >= 1);
     CHECK(figure(*tree, "node_visits") <= plan.triangle_tree.nodes.size());
