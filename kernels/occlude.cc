@@ -7,24 +7,14 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
+#include "kernels/flat-inl.h"
 #include "kernels/flight-inl.h"
 #include "kernels/leaf-inl.h"
-#include "kernels/quad-inl.h"
 #include "kernels/simd-inl.h"
-#include "kernels/sphere-inl.h"
-#include "kernels/triangle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lanewise {
 namespace HWY_NAMESPACE {
-
-// Whether 0 < depth / det < 1, without the division. The quotient's rounding keeps both limits, so this is what
-// intersect's distance would say.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> WithinSegment(D d, V depth, V det) {
-  const V sided = hn::Xor(depth, hn::And(det, hn::SignBit(d)));
-  return hn::And(hn::Gt(sided, hn::Zero(d)), hn::Lt(sided, hn::Abs(det)));
-}
 
 // What a Flight looks for: any triangle within the segment; blocked[ray] = 1 if there is one.
 class AnyTriangle {
@@ -85,33 +75,6 @@ class AnySphere {
   std::span<const Block> blocks_;
   float* blocked_;
 };
-
-// Which rays o + t dir, between two points of the scene, meet a primitive of the flat lists with 0 < t < 1.
-HWY_INLINE MF AnyFlatHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wanted) {
-  const DF d;
-  const VF one = Splat(1.0f);
-  MF hit = hn::Lt(one, hn::Zero(d));
-  for (uint32_t i = 0; i < plan.blocking_quads; ++i) {
-    VF t;
-    const MF met = TestQuad(plan.flat_quads[i], o, dir, t);
-    hit = hn::Or(hit, hn::And(met, hn::Lt(t, one)));
-  }
-  if (plan.blocking_triangles > 0) {
-    const Shear shear = MakeShear(dir);
-    for (uint32_t i = 0; i < plan.blocking_triangles; ++i) {
-      const TriangleTest<DF> test = TestTriangle(plan.flat_triangles[i], o, shear, wanted);
-      hit = hn::Or(hit, hn::And(test.inside, WithinSegment(d, test.depth, test.det)));
-    }
-  }
-  const VF a = Dot(dir, dir), inv_a = hn::Div(one, a);
-  const VF slope[3] = {dir.x, dir.y, dir.z};
-  for (const FlatSphere& sphere : plan.flat_spheres) {
-    const Vec3 to = Sub(o, SplatVec3(sphere.center));
-    const VF f[3] = {to.x, to.y, to.z};
-    hit = hn::Or(hit, hn::Lt(SphereRoot(d, f, slope, a, inv_a, Splat(sphere.radius)), one));
-  }
-  return hit;
-}
 
 void AddLight(const PathState& s, size_t i, MF lit) {
   const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
