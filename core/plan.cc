@@ -67,6 +67,7 @@ class Planner {
     add_triangles();
     add_spheres();
     find_blocking_faces(plan_, corners_, spheres_);
+    find_slabs(plan_);
     build_trees();
     choose_stages();
     check_random_sets();

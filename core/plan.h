@@ -101,6 +101,21 @@ struct FlatQuad {
   uint32_t prim;  // the first of its two triangles; the second's index is not used
 };
 
+// Two opposite quads, one a translate of the other to the last bit, with all geometry and the camera between their planes.
+// Every ray starts there, so it can only meet the one that it travels towards: the two cost what one does. Which hits
+// there are, where and of which primitive is what the two quads would say for any origin between their planes.
+struct FlatSlab {
+  float n[3];         // unit normal
+  float distance[2];  // n.p of the lower face, met by rays with n.d < 0, and of the upper one
+  float a[3];
+  float a_0;
+  float b[3];
+  float b_0;
+  float a_margin;
+  float b_margin;
+  uint32_t prim[2];
+};
+
 // kLeafWidth triangles or spheres side by side, tested by one ray. Short blocks repeat their first.
 struct alignas(64) TriangleBlock {
   float v[3][3][kLeafWidth];  // vertex, axis, lane
@@ -166,7 +181,10 @@ struct Plan {
 
   // Where rays look for them: every primitive is in exactly one of these five. Of quads and triangles the first are
   // those that can block light between two points of the scene: one with all geometry on one side of its plane cannot.
+  // The last quads, from single_quads on, are the faces of slabs, which stand for them where the closest hit is wanted.
   std::vector<FlatQuad> flat_quads;
+  uint32_t single_quads = 0;
+  std::vector<FlatSlab> flat_slabs;
   std::vector<FlatTriangle> flat_triangles;
   uint32_t blocking_quads = 0;
   uint32_t blocking_triangles = 0;

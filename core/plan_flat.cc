@@ -78,6 +78,41 @@ bool divides(const dvec3& n, double distance, std::span<const FlatTriangle> tria
   return front && behind;
 }
 
+// Whether two linear forms are the same but for their sign.
+bool same_form(const float* a, float a_0, const float* b, float b_0) {
+  for (const float sign : {1.0f, -1.0f}) {
+    if (a[0] == sign * b[0] && a[1] == sign * b[1] && a[2] == sign * b[2] && a_0 == sign * b_0) return true;
+  }
+  return false;
+}
+
+// Makes a slab of two faces of the scene's hull, if they are one.
+bool make_slab(const PlanCamera& camera, const FlatQuad& p, const FlatQuad& q, FlatSlab& slab) {
+  if (!same_form(p.n, 0, q.n, 0)) return false;
+  const bool straight = same_form(p.a, p.a_0, q.a, q.a_0) && same_form(p.b, p.b_0, q.b, q.b_0) &&
+                        p.a_margin == q.a_margin && p.b_margin == q.b_margin;
+  const bool swapped = same_form(p.a, p.a_0, q.b, q.b_0) && same_form(p.b, p.b_0, q.a, q.a_0) &&
+                       p.a_margin == q.b_margin && p.b_margin == q.a_margin;
+  if (!straight && !swapped) return false;
+  const float q_distance = glm::dot(to_dvec3(p.n), to_dvec3(q.n)) > 0 ? q.distance : -q.distance;
+  const bool q_is_upper = q_distance > p.distance;
+  slab = {{p.n[0], p.n[1], p.n[2]},
+          {std::min(p.distance, q_distance), std::max(p.distance, q_distance)},
+          {p.a[0], p.a[1], p.a[2]},
+          p.a_0,
+          {p.b[0], p.b[1], p.b[2]},
+          p.b_0,
+          p.a_margin,
+          p.b_margin,
+          {q_is_upper ? p.prim : q.prim, q_is_upper ? q.prim : p.prim}};
+  // Both are on the hull: if they are apart, all geometry is between them. So must be whatever the camera's rays start from.
+  const dvec3 eye = to_dvec3(camera.eye);
+  const double side = glm::dot(to_dvec3(slab.n), eye);
+  const double reach = sum_abs(eye) + std::max(std::abs(p.distance), std::abs(q.distance));
+  const double room = double{camera.lens_radius} + kOffsetUlps * 0x1p-24 * reach;
+  return slab.distance[0] + room < side && side < slab.distance[1] - room;
+}
+
 }  // namespace
 
 void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles) {
@@ -109,6 +144,26 @@ void find_blocking_faces(Plan& plan, std::span<const FlatTriangle> triangles, st
         return divides(to_dvec3(shape), shape[3], triangles, spheres);
       });
   plan.blocking_triangles = static_cast<uint32_t>(faces - plan.flat_triangles.begin());
+}
+
+void find_slabs(Plan& plan) {
+  std::vector<FlatQuad>& quads = plan.flat_quads;
+  std::vector<FlatQuad> faces;
+  for (size_t i = plan.blocking_quads; i < quads.size();) {
+    FlatSlab slab{};
+    size_t j = i + 1;
+    while (j < quads.size() && !make_slab(plan.camera, quads[i], quads[j], slab)) ++j;
+    if (j == quads.size()) {
+      ++i;
+      continue;
+    }
+    plan.flat_slabs.push_back(slab);
+    faces.insert(faces.end(), {quads[i], quads[j]});
+    quads.erase(quads.begin() + static_cast<ptrdiff_t>(j));
+    quads.erase(quads.begin() + static_cast<ptrdiff_t>(i));
+  }
+  plan.single_quads = static_cast<uint32_t>(quads.size());
+  quads.insert(quads.end(), faces.begin(), faces.end());
 }
 
 }  // namespace lanewise

@@ -15,4 +15,7 @@ void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles);
 // and spheres: all of the scene's.
 void find_blocking_faces(Plan& plan, std::span<const FlatTriangle> triangles, std::span<const FlatSphere> spheres);
 
+// Pairs quads that block no light to slabs and puts them last in their list. To be called after find_blocking_faces.
+void find_slabs(Plan& plan);
+
 }  // namespace lanewise

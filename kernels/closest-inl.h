@@ -128,6 +128,7 @@ HWY_INLINE void ClosestHits(const Plan& plan, const HitArrays& hits, size_t begi
       // A dead lane's limit of 0 lets no hit pass.
       Nearest best{hn::IfThenElseZero(alive, Splat(kInfinity)), zero, zero, Splat(1.0f), hn::Set(DI(), kNoHit)};
       NearestFlatQuad(plan, o, dir, best);
+      NearestFlatSlab(plan, o, dir, best);
       NearestFlatSphere(plan, o, dir, best);
       NearestFlatTriangle(plan, o, dir, alive, best);
       triangle_rays.Add(plan.triangle_tree, i, o, dir, best.t, alive);

@@ -36,10 +36,20 @@ HWY_INLINE hn::Mask<D> Before(D d, V t, VInt prim, V best_t, VInt best_prim) {
 }
 
 HWY_INLINE void NearestFlatQuad(const Plan& plan, const Vec3& o, const Vec3& dir, Nearest& best) {
-  for (const FlatQuad& quad : plan.flat_quads) {
+  for (uint32_t i = 0; i < plan.single_quads; ++i) {
+    const FlatQuad& quad = plan.flat_quads[i];
     VF t;
     const MF met = TestQuad(quad, o, dir, t);
     const VI prim = hn::Set(DI(), static_cast<int32_t>(quad.prim));
+    best.Take(hn::And(met, Before(DF(), t, prim, best.t, best.prim)), t, prim);
+  }
+}
+
+HWY_INLINE void NearestFlatSlab(const Plan& plan, const Vec3& o, const Vec3& dir, Nearest& best) {
+  for (const FlatSlab& slab : plan.flat_slabs) {
+    VF t;
+    VI prim;
+    const MF met = TestSlab(slab, o, dir, t, prim);
     best.Take(hn::And(met, Before(DF(), t, prim, best.t, best.prim)), t, prim);
   }
 }

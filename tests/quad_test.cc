@@ -71,6 +71,8 @@ TEST_CASE("quad: hits are those of its two triangles, but for a margin of millio
   const Plan quads = closed_box(3);
   Plan triangles = quads;
   triangles.flat_quads.clear();
+  triangles.flat_slabs.clear();
+  triangles.single_quads = 0;
   std::mt19937 rng(5);
   for (const FlatQuad& q : quads.flat_quads) {
     CHECK(q.a_margin < 5e-5f);
@@ -154,6 +156,72 @@ TEST_CASE("plan: a face on the scene's hull blocks no light between two points o
   }
   CHECK(lit > 500);
   CHECK(different == 0);
+}
+
+TEST_CASE("slab: two faces hit as one, to the bit") {
+  const Plan slabs = make_plan(test::test_box(), {});
+  REQUIRE(slabs.flat_slabs.size() == 2);  // left and right, floor and ceiling
+  REQUIRE(slabs.single_quads == 2);       // the back wall, the light
+  REQUIRE(slabs.flat_quads.size() == 6);
+  Plan quads = slabs;
+  quads.flat_slabs.clear();
+  quads.single_quads = 6;
+  const glm::vec3 half(1, 1, 0.75f);
+  std::mt19937 rng(8);
+  // Mostly between the walls, else exactly on them, with coordinates of directions that are 0, and aimed at edges and corners.
+  const auto point = [&](uint32_t exact) {
+    glm::vec3 p = test::random_point(rng, 1) * half;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (rng() % 4 < exact) p[axis] = rng() % 2 ? half[axis] : -half[axis];
+    }
+    return p;
+  };
+  std::vector<Ray> rays;
+  for (int i = 0; i < 40000; ++i) {
+    Ray ray{point(i % 4 == 0), test::random_direction(rng)};
+    if (i % 3 == 0) ray.d = point(2) - ray.o;
+    if (i % 5 == 0) ray.d[static_cast<int>(rng() % 3)] = rng() % 2 ? 0.0f : -0.0f;
+    if (ray.d == glm::vec3(0)) ray.d.z = 1;
+    ray.d = glm::normalize(ray.d);
+    rays.push_back(ray);
+  }
+  test::for_each_target([&](const char* target) {
+    CAPTURE(target);
+    const std::vector<Path<float>> a = test::trace(slabs, rays), b = test::trace(quads, rays);
+    uint32_t different = 0, walls = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      different += a[i].prim != b[i].prim || a[i].t != b[i].t || a[i].bin != b[i].bin;
+      for (const FlatSlab& slab : slabs.flat_slabs) walls += a[i].prim == slab.prim[0] || a[i].prim == slab.prim[1];
+    }
+    CHECK(different == 0);
+    CHECK(walls > 10000);
+  });
+}
+
+TEST_CASE("slab: only where every ray starts between its faces") {
+  const auto slabs = [](const Scene& scene, const Settings& settings = {}) {
+    const Plan plan = make_plan(scene, settings);
+    CHECK(plan.single_quads + 2 * plan.flat_slabs.size() == plan.flat_quads.size());
+    return plan.flat_slabs.size();
+  };
+  Scene scene = test::test_box();
+  CHECK(slabs(scene) == 2);
+  Settings lens;
+  lens.lens_radius = 0.8;  // beyond floor and ceiling, but not beyond left and right
+  CHECK(slabs(scene, lens) == 1);
+  for (const double z : {-0.1, 0.0, 1.5, 2.0}) {
+    scene.cameras[0].to_world[3] = {0, -3.5, z, 1};
+    CHECK(slabs(scene) == 1);
+  }
+  scene.cameras[0].to_world[3] = {3, -3.5, 2, 1};
+  CHECK(slabs(scene) == 0);
+
+  scene = test::test_box();
+  scene.spheres[0].center.x = 0.8;  // sticks out through the right wall
+  CHECK(slabs(scene) == 1);
+  scene = test::test_box();
+  for (glm::dvec3& p : scene.meshes[4].positions) p.y *= 0.99;  // the right wall is no translate of the left one
+  CHECK(slabs(scene) == 1);
 }
 
 }  // namespace lanewise
