@@ -78,23 +78,31 @@ bool divides(const dvec3& n, double distance, std::span<const FlatTriangle> tria
   return front && behind;
 }
 
-// Whether two linear forms are the same but for their sign.
-bool same_form(const float* a, float a_0, const float* b, float b_0) {
-  for (const float sign : {1.0f, -1.0f}) {
-    if (a[0] == sign * b[0] && a[1] == sign * b[1] && a[2] == sign * b[2] && a_0 == sign * b_0) return true;
-  }
-  return false;
+// Whether two linear forms differ by tolerance at most, but for their sign, at points within reach.
+bool same_form(const float* a, float a_0, const float* b, float b_0, double reach, double tolerance) {
+  const dvec3 p = to_dvec3(a), q = to_dvec3(b);
+  const double sign = glm::dot(p, q) > 0 ? 1 : -1;
+  return sum_abs(p - sign * q) * reach + std::abs(double{a_0} - sign * double{b_0}) <= tolerance;
 }
 
-// Makes a slab of two faces of the scene's hull, if they are one.
-bool make_slab(const PlanCamera& camera, const FlatQuad& p, const FlatQuad& q, FlatSlab& slab) {
-  if (!same_form(p.n, 0, q.n, 0)) return false;
-  const bool straight = same_form(p.a, p.a_0, q.a, q.a_0) && same_form(p.b, p.b_0, q.b, q.b_0) &&
-                        p.a_margin == q.a_margin && p.b_margin == q.b_margin;
-  const bool swapped = same_form(p.a, p.a_0, q.b, q.b_0) && same_form(p.b, p.b_0, q.a, q.a_0) &&
-                       p.a_margin == q.b_margin && p.b_margin == q.a_margin;
+// Makes a slab of two faces of the scene's hull, if they are one; q then takes over p's normal and linear forms, of which
+// its own differ by less than rounding errors in the test.
+bool make_slab(const PlanCamera& camera, const FlatQuad& p, FlatQuad& q, FlatSlab& slab) {
+  const dvec3 n = to_dvec3(p.n), eye = to_dvec3(camera.eye);
+  const double reach =
+      sum_abs(eye) + 2 * double{camera.lens_radius} + std::max(std::abs(p.distance), std::abs(q.distance));
+  if (!same_form(p.n, 0, q.n, 0, reach, 0x1p-30 * reach)) return false;
+  const auto same = [&](const float* form, float form_0) {
+    return [&, form, form_0](const float* other, float other_0, float margin) {
+      return same_form(form, form_0, other, other_0, reach, margin / kQuadUlps);
+    };
+  };
+  const auto same_a = same(p.a, p.a_0), same_b = same(p.b, p.b_0);
+  const bool straight = same_a(q.a, q.a_0, p.a_margin) && same_b(q.b, q.b_0, p.b_margin);
+  const bool swapped = same_a(q.b, q.b_0, p.a_margin) && same_b(q.a, q.a_0, p.b_margin);
   if (!straight && !swapped) return false;
-  const float q_distance = glm::dot(to_dvec3(p.n), to_dvec3(q.n)) > 0 ? q.distance : -q.distance;
+  const bool same_side = glm::dot(n, to_dvec3(q.n)) > 0;
+  const float q_distance = same_side ? q.distance : -q.distance;
   const bool q_is_upper = q_distance > p.distance;
   slab = {{p.n[0], p.n[1], p.n[2]},
           {std::min(p.distance, q_distance), std::max(p.distance, q_distance)},
@@ -106,11 +114,16 @@ bool make_slab(const PlanCamera& camera, const FlatQuad& p, const FlatQuad& q, F
           p.b_margin,
           {q_is_upper ? p.prim : q.prim, q_is_upper ? q.prim : p.prim}};
   // Both are on the hull: if they are apart, all geometry is between them. So must be whatever the camera's rays start from.
-  const dvec3 eye = to_dvec3(camera.eye);
-  const double side = glm::dot(to_dvec3(slab.n), eye);
-  const double reach = sum_abs(eye) + std::max(std::abs(p.distance), std::abs(q.distance));
+  const double side = glm::dot(n, eye);
   const double room = double{camera.lens_radius} + kOffsetUlps * 0x1p-24 * reach;
-  return slab.distance[0] + room < side && side < slab.distance[1] - room;
+  if (!(slab.distance[0] + room < side && side < slab.distance[1] - room)) return false;
+  const uint32_t prim = q.prim;
+  const float distance = q.distance;
+  q = p;
+  q.prim = prim;
+  q.distance = distance;
+  for (float& x : q.n) x = same_side ? x : -x;
+  return true;
 }
 
 }  // namespace

@@ -180,6 +180,7 @@ TEST_SUITE("stability") {
     REQUIRE(plan.triangle_blocks.size() > 0);
     Plan naive = plan;
     for (FlatQuad& quad : naive.flat_quads) quad.a_margin = quad.b_margin = 0;
+    for (FlatSlab& slab : naive.flat_slabs) slab.a_margin = slab.b_margin = 0;
 
     std::mt19937 rng(17);
     std::uniform_real_distribution<double> side(-1, 1), height(0, 1.5);
