@@ -76,7 +76,7 @@ class AnySphere {
   float* blocked_;
 };
 
-void AddLight(const PathState& s, size_t i, MF lit) {
+HWY_INLINE void AddLight(const PathState& s, size_t i, MF lit) {
   const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
   StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);
 }
