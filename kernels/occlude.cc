@@ -76,28 +76,29 @@ class AnySphere {
   float* blocked_;
 };
 
-HWY_INLINE void AddLight(const PathState& s, size_t i, MF lit) {
-  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
-  StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);
+// Paths whose light sample is worth a ray.
+HWY_INLINE MF IsWanted(const Vec3& c) {
+  return hn::Gt(MaxElement({hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)}), hn::Zero(DF()));
 }
 
-// A shadow ray's origin, and whether it is wanted at all.
-struct ShadowRay {
-  Vec3 o, l;
-  MF wanted;
-};
-HWY_INLINE ShadowRay LoadShadowRay(const PathState& s, size_t i) {
-  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
-  const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i), n = LoadVec3(s.n_x, s.n_y, s.n_z, i);
-  return {OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), n, hn::Load(DF(), s.err + i), l), l,
-          hn::Gt(MaxElement({hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)}), hn::Zero(DF()))};
+// Where the shadow ray along l begins.
+HWY_INLINE Vec3 ShadowOrigin(const PathState& s, size_t i, const Vec3& l) {
+  const Vec3 n = LoadVec3(s.n_x, s.n_y, s.n_z, i);
+  return OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), n, hn::Load(DF(), s.err + i), l);
+}
+
+HWY_INLINE void AddLight(const PathState& s, size_t i, MF lit, const Vec3& c) {
+  StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);
 }
 
 void OccludeFlat(const Plan& plan, const PathState& s, Range range) {
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
-    const ShadowRay ray = LoadShadowRay(s, i);
-    if (hn::AllFalse(DF(), ray.wanted)) continue;
-    AddLight(s, i, hn::AndNot(AnyFlatHit(plan, ray.o, ray.l, ray.wanted), ray.wanted));
+    const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
+    const MF wanted = IsWanted(c);
+    if (hn::AllFalse(DF(), wanted)) continue;
+    const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i);
+    const MF blocked = AnyFlatHit(plan, ShadowOrigin(s, i, l), l, wanted);
+    AddLight(s, i, hn::AndNot(blocked, wanted), c);
   }
 }
 
@@ -119,18 +120,20 @@ void OccludeTrees(const Plan& plan, const PathState& s, Range range) {
   for (size_t begin = range.begin; begin < range.end; begin += kShadowBatch) {
     const size_t end = std::min<size_t>(range.end, begin + kShadowBatch);
     for (size_t i = begin; i < end; i += hn::Lanes(d)) {
-      const ShadowRay ray = LoadShadowRay(s, i);
-      const MF open = hn::AndNot(AnyFlatHit(plan, ray.o, ray.l, ray.wanted), ray.wanted);
+      const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i), o = ShadowOrigin(s, i, l);
+      const MF wanted = IsWanted(LoadVec3(s.c_r, s.c_g, s.c_b, i));
+      const MF open = hn::AndNot(AnyFlatHit(plan, o, l, wanted), wanted);
       hn::Store(hn::IfThenZeroElse(open, one), d, blocked + (i - begin));
-      triangle_rays.Add(plan.triangle_tree, i - begin, ray.o, ray.l, one, open);
-      sphere_rays.Add(plan.sphere_tree, i - begin, ray.o, ray.l, one, open);
+      triangle_rays.Add(plan.triangle_tree, i - begin, o, l, one, open);
+      sphere_rays.Add(plan.sphere_tree, i - begin, o, l, one, open);
     }
     if (triangle_rays.size() > 0) WalkAnyTriangle(plan, triangle_rays, blocked);
     if (sphere_rays.size() > 0) WalkAnySphere(plan, sphere_rays, blocked);
     triangle_rays.clear();
     sphere_rays.clear();
     for (size_t i = begin; i < end; i += hn::Lanes(d)) {
-      AddLight(s, i, hn::Eq(hn::Load(d, blocked + (i - begin)), hn::Zero(d)));
+      const MF lit = hn::Eq(hn::Load(d, blocked + (i - begin)), hn::Zero(d));
+      AddLight(s, i, lit, LoadVec3(s.c_r, s.c_g, s.c_b, i));
     }
   }
 }
