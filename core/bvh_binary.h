@@ -37,7 +37,7 @@ struct Bounds4 {
   }
 };
 
-// What the builder sorts: a primitive or a part of one. The index travels in the box's spare lane, dressed as a normal
+// What the builder sorts: a primitive. The index travels in the box's spare lane, dressed as a normal
 // number, for arithmetic on all lanes.
 struct Ref {
   Bounds4 box;

@@ -21,9 +21,14 @@ class Optimizer {
 
   void run() {
     const size_t n = std::min(kReinsertions, largest_.size());
+    // Areas that overflow may be no number, which would not compare.
+    const auto key = [&](uint32_t node) {
+      const float area = nodes_[node].area();
+      return area >= 0 ? -area : -kInf;
+    };
     const auto larger = [&](uint32_t a, uint32_t b) {
-      return std::tuple(-nodes_[a].area(), nodes_[a].first, nodes_[a].count) <
-             std::tuple(-nodes_[b].area(), nodes_[b].first, nodes_[b].count);
+      return std::tuple(key(a), nodes_[a].first, nodes_[a].count) <
+             std::tuple(key(b), nodes_[b].first, nodes_[b].count);
     };
     std::partial_sort(largest_.begin(), largest_.begin() + static_cast<std::ptrdiff_t>(n), largest_.end(), larger);
     for (size_t i = 0; i < n; ++i) reinsert(largest_[i]);

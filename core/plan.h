@@ -98,10 +98,12 @@ struct FlatQuad {
   float b_0;
   float a_margin;
   float b_margin;
+  float reach;    // the largest |x| + |y| + |z| of its corners and of the camera
   uint32_t prim;  // the first of its two triangles; the second's index is not used
 };
 
-// Two opposite quads, one a translate of the other to the last bit, with all geometry and the camera between their planes.
+// Two opposite quads, one a translate of the other up to the rounding errors of a quad's test (the second then takes over
+// the first's normal and forms), with all geometry and the camera between their planes.
 // Every ray starts there, so it can only meet the one that it travels towards: the two cost what one does. Which hits
 // there are, where and of which primitive is what the two quads would say for any origin between their planes.
 struct FlatSlab {
@@ -179,7 +181,7 @@ struct Plan {
   std::vector<PlanLight> lights;
   AlignedVector<float> light_table;  // 4 a light, to gather by light: radiance, area
 
-  // Where rays look for them: every primitive is in exactly one of these five. Of quads and triangles the first are
+  // Where rays look for them: every primitive is in exactly one of quads, triangles, spheres and the two trees. Of quads and triangles the first are
   // those that can block light between two points of the scene: one with all geometry on one side of its plane cannot.
   // The last quads, from single_quads on, are the faces of slabs, which stand for them where the closest hit is wanted.
   std::vector<FlatQuad> flat_quads;
@@ -198,7 +200,7 @@ struct Plan {
   std::vector<PlanGroup> groups;          // every primitive is in one
 };
 
-// Compiles the scene for these settings. Throws Error for what a plan cannot hold (more than 2^31 primitives).
+// Compiles the scene for these settings. Throws Error for what a plan cannot hold (2^29 primitives or more).
 Plan make_plan(const Scene& scene, const Settings& settings);
 
 // The same; gives back the memory of the scene's meshes as it goes.

@@ -48,6 +48,7 @@ FlatQuad make_quad(const Parallelogram& p, uint32_t prim, double camera_reach) {
   quad.distance = static_cast<float>(glm::dot(n, p.corner + 0.5 * (p.e1 + p.e2)));
   make_axis(p, p.e1, p.e2, reach, quad.a, quad.a_0, quad.a_margin);
   make_axis(p, p.e2, p.e1, reach, quad.b, quad.b_0, quad.b_margin);
+  quad.reach = static_cast<float>(reach);
   quad.prim = prim;
   return quad;
 }
@@ -86,11 +87,10 @@ bool same_form(const float* a, float a_0, const float* b, float b_0, double reac
 }
 
 // Makes a slab of two faces of the scene's hull, if they are one; q then takes over p's normal and linear forms, of which
-// its own differ by less than rounding errors in the test.
-bool make_slab(const PlanCamera& camera, const FlatQuad& p, FlatQuad& q, FlatSlab& slab) {
+// its own differ by less than rounding errors in the test, and both the larger margins.
+bool make_slab(const PlanCamera& camera, FlatQuad& p, FlatQuad& q, FlatSlab& slab) {
   const dvec3 n = to_dvec3(p.n), eye = to_dvec3(camera.eye);
-  const double reach =
-      sum_abs(eye) + 2 * double{camera.lens_radius} + std::max(std::abs(p.distance), std::abs(q.distance));
+  const double reach = std::max(p.reach, q.reach);
   if (!same_form(p.n, 0, q.n, 0, reach, 0x1p-30 * reach)) return false;
   const auto same = [&](const float* form, float form_0) {
     return [&, form, form_0](const float* other, float other_0, float margin) {
@@ -104,19 +104,23 @@ bool make_slab(const PlanCamera& camera, const FlatQuad& p, FlatQuad& q, FlatSla
   const bool same_side = glm::dot(n, to_dvec3(q.n)) > 0;
   const float q_distance = same_side ? q.distance : -q.distance;
   const bool q_is_upper = q_distance > p.distance;
+  const float a_margin = std::max(p.a_margin, straight ? q.a_margin : q.b_margin);
+  const float b_margin = std::max(p.b_margin, straight ? q.b_margin : q.a_margin);
   slab = {{p.n[0], p.n[1], p.n[2]},
           {std::min(p.distance, q_distance), std::max(p.distance, q_distance)},
           {p.a[0], p.a[1], p.a[2]},
           p.a_0,
           {p.b[0], p.b[1], p.b[2]},
           p.b_0,
-          p.a_margin,
-          p.b_margin,
+          a_margin,
+          b_margin,
           {q_is_upper ? p.prim : q.prim, q_is_upper ? q.prim : p.prim}};
   // Both are on the hull: if they are apart, all geometry is between them. So must be whatever the camera's rays start from.
   const double side = glm::dot(n, eye);
   const double room = double{camera.lens_radius} + kOffsetUlps * 0x1p-24 * reach;
   if (!(slab.distance[0] + room < side && side < slab.distance[1] - room)) return false;
+  p.a_margin = a_margin;
+  p.b_margin = b_margin;
   const uint32_t prim = q.prim;
   const float distance = q.distance;
   q = p;

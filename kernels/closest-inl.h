@@ -1,5 +1,5 @@
 // The closest hit of a vector of rays in all of a plan's primitives: flat lists with all lanes at once, then the trees,
-// ray by ray, for those that meet their bounds. A ray's result does not depend on the vector's width, nor on whether a
+// many rays in flight, for those that meet their bounds. A ray's result does not depend on the vector's width, nor on whether a
 // primitive is in a list or a tree.
 #if defined(LANEWISE_KERNELS_CLOSEST_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LANEWISE_KERNELS_CLOSEST_INL_H_

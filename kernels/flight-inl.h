@@ -77,9 +77,9 @@ class Flight {
       : leaves_(leaves),
         bounds_(bvh.bounds),
         nodes_(bvh.nodes.data()),
-        base_{reinterpret_cast<const char*>(bvh.nodes.data()), reinterpret_cast<const char*>(leaves.Blocks().data())},
+        base_{reinterpret_cast<uintptr_t>(bvh.nodes.data()), reinterpret_cast<uintptr_t>(leaves.Blocks().data())},
         landing_(kLeafBit | static_cast<uint32_t>(leaves.Blocks().size())),
-        stride_(7 * bvh.depth + 1 + 2 * kBvhWidth) {
+        stride_(7 * bvh.depth + 1 + kBvhWidth) {
     for (uint32_t i = 0; i < kFlight; ++i) landed_[i] = i;
   }
 
@@ -126,9 +126,10 @@ class Flight {
     at_leaves += leaf - end;
     landed_[free] = slot;
     free += end;
-    const char* address = base_[leaf] + leaf_block(child) * size_[leaf];
-    HWY_UNROLL(4)
-    for (size_t line = 0; line < 4; ++line) hwy::Prefetch(address + 64 * line);
+    // A block of triangles has five lines, a node four. Past the end nothing is read, only asked for.
+    const uintptr_t address = base_[leaf] + leaf_block(child) * size_[leaf];
+    HWY_UNROLL(5)
+    for (size_t line = 0; line < 5; ++line) hwy::Prefetch(reinterpret_cast<const char*>(address + 64 * line));
   }
 
   // A step is taken in two halves, each short enough for the processor to have several rays' at work at once.
@@ -189,7 +190,7 @@ class Flight {
   const Leaves& leaves_;
   const Box& bounds_;
   const BvhNode* nodes_;
-  const char* base_[2];  // of nodes and of blocks
+  uintptr_t base_[2];  // addresses of nodes and of blocks
   size_t size_[2] = {sizeof(BvhNode), sizeof(Block)};
   uint32_t landing_;  // stands for the end where a child would stand: a leaf that is none
   size_t stride_;     // words of the stacks a ray

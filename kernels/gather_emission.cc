@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
 #include "kernels/closest-inl.h"
+#include "kernels/shadow-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,11 +19,6 @@ struct GatherBatch {
   HWY_ALIGN float o[3][kSize], t[kSize], u[kSize], v[kSize];
   HWY_ALIGN uint32_t prim[kSize];
 };
-
-HWY_INLINE MF Wanted(const PathState& s, size_t i) {
-  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
-  return hn::Gt(MaxElement({hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)}), hn::Zero(DF()));
-}
 
 // Adds what the lights that the rays at i of the state, j of the batch, have met send back along them.
 HWY_INLINE void AddEmission(const Plan& plan, const PathState& s, size_t i, const GatherBatch& batch, size_t j) {
@@ -42,14 +38,14 @@ HWY_INLINE void AddEmission(const Plan& plan, const PathState& s, size_t i, cons
     const Vec3 o = LoadVec3(batch.o[0], batch.o[1], batch.o[2], j);
     front = IfThenElse(sphere, Sub(MulAdd(hn::Load(d, batch.t + j), l, o), front), front);
   }
+  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
   const MF seen = hn::And(
       hn::And(hn::RebindMask(d, hn::Eq(bin, hn::Set(du, uint32_t{kEmitter}))), hn::Lt(Dot(front, l), hn::Zero(d))),
       hn::RebindMask(d, hn::Gt(hit, hn::Set(di, kNoHit))));
-  const MF adds = hn::And(Wanted(s, i), seen);
+  const MF adds = hn::And(IsWanted(c), seen);
   if (hn::AllFalse(d, adds)) return;
   const VI light = hn::BitCast(di, hn::GatherIndex(du, plan.prim_light.data(), prim));
   const Vec3 radiance = GatherVec3(plan.light_table.data(), hn::ShiftLeft<2>(light));
-  const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
   StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(adds, Mul(c, radiance))), s.L_r, s.L_g, s.L_b, i);
 }
 
@@ -60,11 +56,10 @@ void GatherEmission(const Plan& plan, const PathState& s, Range range) {
     const size_t end = std::min<size_t>(range.end, begin + GatherBatch::kSize);
     const auto ray = [&](size_t j, Vec3& o, Vec3& l) HWY_ATTR {
       const size_t i = begin + j;
-      const Vec3 n = LoadVec3(s.n_x, s.n_y, s.n_z, i);
       l = LoadVec3(s.l_x, s.l_y, s.l_z, i);
-      o = OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), n, hn::Load(d, s.err + i), l);
+      o = ShadowOrigin(s, i, l);
       StoreVec3(o, batch.o[0], batch.o[1], batch.o[2], j);
-      return Wanted(s, i);
+      return IsWanted(LoadVec3(s.c_r, s.c_g, s.c_b, i));
     };
     ClosestHits(plan, {batch.t, batch.u, batch.v, batch.prim}, 0, end - begin, ray);
     for (size_t i = begin; i < end; i += hn::Lanes(d)) AddEmission(plan, s, i, batch, i - begin);

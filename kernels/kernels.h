@@ -56,7 +56,8 @@ struct Bins {
 
 // Moves every path to its bin, and drops the padding that the sort before left: stable, bins contiguous, each padded with
 // the dummy path to a multiple of kLanes. The only kernel in which lanes meet. Of what goes to kFinished only slot and L are
-// moved: nothing else of it will be read.
+// moved: nothing else of it will be read. Nor is an array moved that both states share (u and v, where no normal needs them): it
+// holds anything then.
 // Writes also all fields of the padding.
 Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
 constexpr KernelFields kSortFields = {.reads = "bin KEPT", .writes = "KEPT"};

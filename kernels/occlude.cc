@@ -10,6 +10,7 @@
 #include "kernels/flat-inl.h"
 #include "kernels/flight-inl.h"
 #include "kernels/leaf-inl.h"
+#include "kernels/shadow-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -75,17 +76,6 @@ class AnySphere {
   std::span<const Block> blocks_;
   float* blocked_;
 };
-
-// Paths whose light sample is worth a ray.
-HWY_INLINE MF IsWanted(const Vec3& c) {
-  return hn::Gt(MaxElement({hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)}), hn::Zero(DF()));
-}
-
-// Where the shadow ray along l begins.
-HWY_INLINE Vec3 ShadowOrigin(const PathState& s, size_t i, const Vec3& l) {
-  const Vec3 n = LoadVec3(s.n_x, s.n_y, s.n_z, i);
-  return OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), n, hn::Load(DF(), s.err + i), l);
-}
 
 HWY_INLINE void AddLight(const PathState& s, size_t i, MF lit, const Vec3& c) {
   StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);

@@ -76,6 +76,7 @@ void add_profile_flags(CLI::App& app, ProfileOptions& o) {
       ->type_name("FILE");
   app.add_option("--trace-waves", o.trace_waves, "Only of the first N waves of each thread")
       ->check(whole_number(1, 10'000))
+      ->needs("--trace")
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("-q,--quiet", o.render.quiet, "No progress, no tables");

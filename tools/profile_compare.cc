@@ -27,7 +27,9 @@ struct Change {
   double least = kLeast;
 
   double ratio() const { return median(before) > 0 ? median(now) / median(before) : 0; }
-  bool is_significant() const { return std::fabs(ratio() - 1) > least && rank_test(before, now) < kAlarms; }
+  bool is_significant() const {
+    return median(before) > 0 && std::fabs(ratio() - 1) > least && rank_test(before, now) < kAlarms;
+  }
   std::string row() const {
     std::string text = print("%-17s %9.2f %6s %9.2f %6s %8.3f", name.c_str(), median(before), noise_of(before).c_str(),
                              median(now), noise_of(now).c_str(), ratio());
