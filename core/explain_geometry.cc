@@ -8,8 +8,9 @@ namespace {
 
 constexpr size_t kMostTreeRows = 8;  // more meshes in trees than that share one
 
-uint32_t count_faces(const PlanGroup& group, const std::vector<FlatQuad>& faces, size_t end) {
-  return static_cast<uint32_t>(std::count_if(faces.begin(), faces.begin() + static_cast<ptrdiff_t>(end),
+uint32_t count_faces(const PlanGroup& group, const std::vector<FlatQuad>& faces, size_t end, size_t begin = 0) {
+  return static_cast<uint32_t>(std::count_if(faces.begin() + static_cast<ptrdiff_t>(begin),
+                                             faces.begin() + static_cast<ptrdiff_t>(end),
                                              [&](const FlatQuad& f) { return f.prim - group.first < group.size; }));
 }
 
@@ -34,6 +35,8 @@ Decision explain_flat(const Plan& plan, const PlanGroup& group) {
                        : blocking == quads + triangles ? ""
                                                        : "the others have all geometry on one side";
   if (group.smooth) reason += (reason.empty() ? "" : "; ") + std::string("interpolated normals: no parallelograms");
+  const uint32_t paired = count_faces(group, plan.flat_quads, plan.flat_quads.size(), plan.single_quads);
+  if (paired > 0) reason += std::string(reason.empty() ? "" : "; ") + "one test with the wall opposite";
   if (reason.empty()) reason = "few: all tested, by whole vectors of rays";
   return {"geometry",
           group.name,
@@ -42,6 +45,7 @@ Decision explain_flat(const Plan& plan, const PlanGroup& group) {
           {{"triangles", double{1} * group.size},
            {"parallelograms", double{1} * quads},
            {"faces_tested", double{1} * (quads + triangles)},
+           {"in_slabs", double{1} * paired},
            {"for_shadows", double{1} * blocking}}};
 }
 

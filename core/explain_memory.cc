@@ -41,7 +41,8 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
   const auto add = [&](const char* subject, const char* choice, const char* reason, size_t bytes) {
     memory.add(subject, choice, reason, bytes, "per_primitive", primitives);
   };
-  const size_t flat = bytes_of(plan.flat_quads) + bytes_of(plan.flat_triangles) + bytes_of(plan.flat_spheres);
+  const size_t flat = bytes_of(plan.flat_quads) + bytes_of(plan.flat_slabs) + bytes_of(plan.flat_triangles) +
+                      bytes_of(plan.flat_spheres);
   const size_t nodes = bytes_of(plan.triangle_tree.nodes) + bytes_of(plan.sphere_tree.nodes);
   const bool smooth = !plan.prim_normals.empty();
   if (flat > 0) memory.add("flat lists", "in order", "read by every vector of rays", flat);
