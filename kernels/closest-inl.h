@@ -8,8 +8,6 @@
 #define LANEWISE_KERNELS_CLOSEST_INL_H_
 #endif
 
-#include <span>
-
 #include "core/plan.h"
 #include "kernels/flat-inl.h"
 #include "kernels/flight-inl.h"
@@ -36,20 +34,12 @@ struct HitArrays {
 };
 
 // What a Flight looks for: the nearest triangle.
-class NearestTriangle {
+class NearestTriangle : public TriangleLeaves {
  public:
-  using Block = TriangleBlock;
-  using Ray = TriangleRay;
-  using Test = BlockTest;
   static constexpr bool kNearest = true;
 
-  NearestTriangle(const Plan& plan, const HitArrays& hits) : blocks_(plan.triangle_blocks), hits_(hits) {}
+  NearestTriangle(const Plan& plan, const HitArrays& hits) : TriangleLeaves(plan), hits_(hits) {}
 
-  std::span<const Block> Blocks() const { return blocks_; }
-  static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
-  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
-    return TestBlockQuickly(block, ray, t_max, test);
-  }
   HWY_INLINE bool Visit(const Ray& ray, const Block& block, uint32_t hits, Test& test, NodeRay& node_ray) const {
     const uint32_t index = node_ray.index;
     bool nearer = false;
@@ -66,25 +56,16 @@ class NearestTriangle {
   }
 
  private:
-  std::span<const Block> blocks_;
   HitArrays hits_;
 };
 
 // The nearest sphere.
-class NearestSphere {
+class NearestSphere : public SphereLeaves {
  public:
-  using Block = SphereBlock;
-  using Ray = SphereRay;
-  using Test = SphereTest;
   static constexpr bool kNearest = true;
 
-  NearestSphere(const Plan& plan, const HitArrays& hits) : blocks_(plan.sphere_blocks), hits_(hits) {}
+  NearestSphere(const Plan& plan, const HitArrays& hits) : SphereLeaves(plan), hits_(hits) {}
 
-  std::span<const Block> Blocks() const { return blocks_; }
-  static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
-  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
-    return TestBlock(block, ray, t_max, test);
-  }
   HWY_INLINE bool Visit(const Ray& /*ray*/, const Block& block, uint32_t hits, const Test& test,
                         NodeRay& node_ray) const {
     const uint32_t index = node_ray.index;
@@ -100,7 +81,6 @@ class NearestSphere {
   }
 
  private:
-  std::span<const Block> blocks_;
   HitArrays hits_;
 };
 

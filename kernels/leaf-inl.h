@@ -7,6 +7,7 @@
 #endif
 
 #include <limits>
+#include <span>
 
 #include "core/plan.h"
 #include "kernels/simd-inl.h"
@@ -153,6 +154,44 @@ HWY_INLINE uint32_t TestBlock(const SphereBlock& block, const SphereRay& ray, fl
   }
   return bits;
 }
+
+// The triangles of a tree's leaves, for a Flight: all but what is done with a hit.
+class TriangleLeaves {
+ public:
+  using Block = TriangleBlock;
+  using Ray = TriangleRay;
+  using Test = BlockTest;
+
+  explicit TriangleLeaves(const Plan& plan) : blocks_(plan.triangle_blocks) {}
+
+  std::span<const Block> Blocks() const { return blocks_; }
+  static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
+  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
+    return TestBlockQuickly(block, ray, t_max, test);
+  }
+
+ private:
+  std::span<const Block> blocks_;
+};
+
+// The spheres of a tree's leaves, for a Flight: all but what is done with a hit.
+class SphereLeaves {
+ public:
+  using Block = SphereBlock;
+  using Ray = SphereRay;
+  using Test = SphereTest;
+
+  explicit SphereLeaves(const Plan& plan) : blocks_(plan.sphere_blocks) {}
+
+  std::span<const Block> Blocks() const { return blocks_; }
+  static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
+  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
+    return TestBlock(block, ray, t_max, test);
+  }
+
+ private:
+  std::span<const Block> blocks_;
+};
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

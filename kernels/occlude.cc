@@ -1,5 +1,3 @@
-#include <span>
-
 #include "kernels/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -18,20 +16,12 @@ namespace lanewise {
 namespace HWY_NAMESPACE {
 
 // What a Flight looks for: any triangle within the segment; blocked[ray] = 1 if there is one.
-class AnyTriangle {
+class AnyTriangle : public TriangleLeaves {
  public:
-  using Block = TriangleBlock;
-  using Ray = TriangleRay;
-  using Test = BlockTest;
   static constexpr bool kNearest = false;
 
-  AnyTriangle(const Plan& plan, float* blocked) : blocks_(plan.triangle_blocks), blocked_(blocked) {}
+  AnyTriangle(const Plan& plan, float* blocked) : TriangleLeaves(plan), blocked_(blocked) {}
 
-  std::span<const Block> Blocks() const { return blocks_; }
-  static HWY_INLINE TriangleRays Make(const Rays& rays) { return MakeTriangleRays(rays); }
-  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
-    return TestBlockQuickly(block, ray, t_max, test);
-  }
   HWY_INLINE bool Visit(const Ray& ray, const Block& block, uint32_t hits, Test& test, const NodeRay& node_ray) const {
     const DLeaf d;
     const uint32_t met = MakeSure(block, ray, hits, test);
@@ -45,25 +35,16 @@ class AnyTriangle {
   }
 
  private:
-  std::span<const Block> blocks_;
   float* blocked_;
 };
 
 // Any sphere within the segment.
-class AnySphere {
+class AnySphere : public SphereLeaves {
  public:
-  using Block = SphereBlock;
-  using Ray = SphereRay;
-  using Test = SphereTest;
   static constexpr bool kNearest = false;
 
-  AnySphere(const Plan& plan, float* blocked) : blocks_(plan.sphere_blocks), blocked_(blocked) {}
+  AnySphere(const Plan& plan, float* blocked) : SphereLeaves(plan), blocked_(blocked) {}
 
-  std::span<const Block> Blocks() const { return blocks_; }
-  static HWY_INLINE SphereRays Make(const Rays& rays) { return MakeSphereRays(rays); }
-  static HWY_INLINE uint32_t MayHit(const Ray& ray, const Block& block, float t_max, Test& test) {
-    return TestBlock(block, ray, t_max, test);
-  }
   HWY_INLINE bool Visit(const Ray& /*ray*/, const Block& /*block*/, uint32_t /*hits*/, const Test& test,
                         const NodeRay& node_ray) const {
     for (const float root : test.t) {
@@ -73,7 +54,6 @@ class AnySphere {
   }
 
  private:
-  std::span<const Block> blocks_;
   float* blocked_;
 };
 
