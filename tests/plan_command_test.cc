@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +9,7 @@
 
 #include "core/explain.h"
 #include "scenes/load.h"
+#include "tests/program.h"
 #include "tests/subprocess.h"
 #include "tests/temporary_folder.h"
 
@@ -17,23 +17,12 @@ namespace lanewise {
 namespace {
 
 using nlohmann::json;
+using test::box;
+using test::nothing_to_test;
 using test::ProcessResult;
+using test::program;
 using test::TemporaryFolder;
 using Arguments = std::vector<std::string>;
-
-std::string environment(const char* name, const char* otherwise) {
-  const char* value = std::getenv(name);
-  return std::filesystem::absolute(value ? value : otherwise).string();
-}
-
-std::string program() { return environment("LANEWISE_BINARY", "./lanewise"); }
-std::string box() { return environment("LANEWISE_SOURCE_DIR", ".") + "/scenes/cornell_spheres.dae"; }
-
-bool nothing_to_test() {
-  if (std::filesystem::exists(program())) return false;
-  MESSAGE("skipped: no program at " << program());
-  return true;
-}
 
 ProcessResult plan(const TemporaryFolder& folder, const Arguments& arguments) {
   Arguments all = {"plan"};

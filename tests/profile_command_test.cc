@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/program.h"
 #include "tests/subprocess.h"
 #include "tests/temporary_folder.h"
 
@@ -16,24 +16,13 @@ namespace lanewise {
 namespace {
 
 using nlohmann::json;
+using test::box;
+using test::nothing_to_test;
 using test::ProcessResult;
+using test::program;
 using test::read_text;
 using test::TemporaryFolder;
 using Arguments = std::vector<std::string>;
-
-std::string environment(const char* name, const char* otherwise) {
-  const char* value = std::getenv(name);
-  return std::filesystem::absolute(value ? value : otherwise).string();
-}
-
-std::string program() { return environment("LANEWISE_BINARY", "./lanewise"); }
-std::string box() { return environment("LANEWISE_SOURCE_DIR", ".") + "/scenes/cornell_spheres.dae"; }
-
-bool nothing_to_test() {
-  if (std::filesystem::exists(program())) return false;
-  MESSAGE("skipped: no program at " << program());
-  return true;
-}
 
 ProcessResult profile(const TemporaryFolder& folder, const Arguments& arguments) {
   Arguments all = {"profile"};
