@@ -1,5 +1,6 @@
 // Which random numbers each decision draws. All come in sets of four, a pure function of (seed, pixel, sample, set), so
-// a picture depends on nothing else; no two decisions share a set.
+// a picture depends on nothing else; no two decisions share a set. With --sampler sobol a set is four dimensions of a
+// low-discrepancy sequence over the pixel's samples, so that what is decided together lies in one set.
 #pragma once
 
 #include <cstdint>
@@ -18,5 +19,9 @@ enum RandomPurpose : uint32_t {
 enum BsdfDraw : uint32_t { kDrawU = 0, kDrawV = 1, kDrawLobe = 2, kDrawRoulette = 3 };
 
 constexpr uint32_t random_set(uint32_t bounce, uint32_t purpose) { return bounce * kSetsPerBounce + purpose; }
+
+// A Sobol sequence is this long; a pixel's further samples come from further sequences, scrambled afresh. Samples
+// first .. first + 2^k - 1 are a net of it (at their best together) where first is a multiple of 2^k.
+constexpr uint32_t kSequenceBits = 16;
 
 }  // namespace lanewise

@@ -11,6 +11,7 @@ enum class Direct { kMis, kLight, kBsdf, kHemisphere };  // how direct light is 
 enum class BsdfSampling { kVndf, kNdf, kCosine };        // how microfacets choose a direction
 enum class Accel { kPlan, kTree };  // where rays look for geometry: as the plan chooses; all in trees
 enum class Fresnel { kExact, kSchlick, kCourse };
+enum class Sampler { kSobol, kRandom };  // where a path's numbers come from: see kernels/rng-inl.h
 
 // A rectangle of pixels of the whole picture; row 0 is at the top.
 struct Window {
@@ -27,6 +28,7 @@ struct Settings {
   uint32_t threads = 0;        // 0: all the machine has
   uint32_t wave = 4096;        // paths in flight per thread, a multiple of kLanes
   uint64_t seed = 0;
+  Sampler sampler = Sampler::kSobol;
   Accel accel = Accel::kPlan;
   View view = View::kFile;
   double lens_radius = 0;     // -b: of a thin lens, in scene units; 0: a pinhole

@@ -75,6 +75,8 @@ void add_sampling_flags(CLI::App& app, RenderOptions& o) {
                      std::to_string(kNoiseSpp))
       ->check(real_number(0, 10))
       ->type_name("X");
+  add_choice<Sampler>(app, "--sampler", o.settings.sampler, {{"sobol", Sampler::kSobol}, {"random", Sampler::kRandom}},
+                      "Numbers of a pixel's paths: an Owen-scrambled Sobol sequence, or independent ones");
   app.add_option("--seed", o.settings.seed, "Seed of the random numbers")
       ->check(whole_number(0, std::numeric_limits<uint64_t>::max()))
       ->type_name("N")

@@ -6,6 +6,7 @@
 #include "core/dimensions.h"
 #include "core/path_state.h"
 #include "core/plan.h"
+#include "kernels/sobol.h"
 
 namespace lanewise::reference {
 
@@ -14,8 +15,11 @@ struct Random4 {
   T u[4];
 };
 
-template <class T>
-Random4<T> draw_random(uint32_t pixel, uint32_t sample, uint32_t set, uint64_t seed) {
+struct Hash4 {
+  uint32_t x, y, z, w;
+};
+
+inline Hash4 pcg4d(uint32_t pixel, uint32_t sample, uint32_t set, uint64_t seed) {
   const auto step = [](uint32_t v) { return v * 1664525u + 1013904223u; };
   uint32_t x = step(pixel), y = step(sample), z = step(set ^ static_cast<uint32_t>(seed >> 32));
   uint32_t w = step(static_cast<uint32_t>(seed));
@@ -31,13 +35,41 @@ Random4<T> draw_random(uint32_t pixel, uint32_t sample, uint32_t set, uint64_t s
   z ^= z >> 16;
   w ^= w >> 16;
   mix();
-  const auto uniform = [](uint32_t bits) { return static_cast<T>(bits >> 8) * static_cast<T>(0x1p-24); };
-  return {{uniform(x), uniform(y), uniform(z), uniform(w)}};
+  return {x, y, z, w};
+}
+
+inline uint32_t permute(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1;
+  x ^= x * 0x05526c56u;
+  return x ^ (x * 0x53a22864u);
+}
+
+// The point of the pixel's sample as four fractions of 2^32.
+inline Hash4 sobol4d(uint32_t pixel, uint32_t sample, uint32_t set, uint64_t seed) {
+  const Hash4 seeds = pcg4d(pixel, sample >> kSequenceBits, set, seed);
+  const uint32_t shuffle = (seeds.x ^ seeds.z >> 15) + (seeds.y ^ seeds.w << 7);
+  const uint32_t index = permute(reverse_bits(sample << (32 - kSequenceBits), 32), shuffle);
+  const auto fraction = [&](uint32_t dimension, uint32_t dimension_seed) {
+    uint32_t number = 0;
+    for (uint32_t j = 0; j < kSequenceBits; ++j) number ^= (index >> j & 1) * kSobol[dimension][j];
+    return reverse_bits(permute(number, dimension_seed), 32);
+  };
+  return {fraction(0, seeds.x), fraction(1, seeds.y), fraction(2, seeds.z), fraction(3, seeds.w)};
+}
+
+template <class T>
+Random4<T> draw_random(Sampler sampler, uint32_t pixel, uint32_t sample, uint32_t set, uint64_t seed) {
+  const Hash4 bits = (sampler == Sampler::kSobol ? sobol4d : pcg4d)(pixel, sample, set, seed);
+  const auto uniform = [](uint32_t x) { return static_cast<T>(x >> 8) * static_cast<T>(0x1p-24); };
+  return {{uniform(bits.x), uniform(bits.y), uniform(bits.z), uniform(bits.w)}};
 }
 
 template <class T>
 Random4<T> draw_random(const Plan& plan, const Path<T>& p, uint32_t purpose) {
-  return draw_random<T>(p.pixel, p.sample, random_set(p.step.bounce, purpose), plan.settings.seed);
+  return draw_random<T>(plan.settings.sampler, p.pixel, p.sample, random_set(p.step.bounce, purpose),
+                        plan.settings.seed);
 }
 
 }  // namespace lanewise::reference
