@@ -13,10 +13,14 @@ double relative_difference(double a, double b) { return a == b ? 0 : a / b - 1; 
 
 }  // namespace
 
-ImageComparison compare_images(const Image& a, const Image& b) {
+void check_same_size(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) {
     throw Error("the pictures differ in size: " + size_of(a) + " and " + size_of(b));
   }
+}
+
+ImageComparison compare_images(const Image& a, const Image& b) {
+  check_same_size(a, b);
   ImageComparison result;
   size_t differing = 0;
   for (size_t i = 0; i < a.rgb.size(); i += 3) {

@@ -16,8 +16,10 @@ struct ImageComparison {
   double differing = 0;                         // share of the pixels that differ in any channel; NaN differs from all
 };
 
-// The pictures must not be empty. Throws Error, naming both sizes, unless they have the same one. NaN and Inf are not
-// left out: they show up in the means.
+// Throws Error, naming both sizes, unless they are the same.
+void check_same_size(const Image& a, const Image& b);
+
+// The pictures must be of one size (check_same_size) and not empty. NaN and Inf are not left out: they show up in the means.
 ImageComparison compare_images(const Image& a, const Image& b);
 
 }  // namespace lanewise
