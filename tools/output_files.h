@@ -10,6 +10,7 @@ namespace lanewise {
 
 class OutputFiles {
  public:
+  OutputFiles() = default;
   explicit OutputFiles(const RenderOptions& options);  // the scene and the camera are read
 
   // A file that is read.
