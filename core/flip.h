@@ -31,8 +31,8 @@ std::vector<float> flip_ldr(const Image& test, const Image& reference, double pi
 std::vector<float> flip_hdr(const Image& test, const Image& reference, const FlipExposures& exposures,
                             double pixels_per_degree = kFlipPixelsPerDegree);
 
-// From that which brings the reference's brightest pixel to 0.85 of white to that which brings its median there, in steps of
-// a stop or less (section 3 of the HDR paper). Black pixels are left out of the median if it would be 0; a reference that is
+// From that which brings the reference's brightest pixel to 0.85 of white to that which brings its median there, about a
+// stop apart (section 3 of the HDR paper). Black pixels are left out of the median if it would be 0; a reference that is
 // black everywhere is shown as it is.
 FlipExposures flip_exposures(const Image& reference);
 
