@@ -62,13 +62,6 @@ std::vector<float> conductors(Fresnel model, FresnelInputs in) {
   return f;
 }
 
-double fresnel_equations(double c, std::complex<double> index) {
-  const std::complex<double> cos_t = std::sqrt(1.0 - (1 - c * c) / (index * index));
-  const std::complex<double> rs = (c - index * cos_t) / (c + index * cos_t);
-  const std::complex<double> rp = (index * c - cos_t) / (index * c + cos_t);
-  return (std::norm(rs) + std::norm(rp)) / 2;
-}
-
 }  // namespace test
 }  // namespace lanewise
 #endif

@@ -1,8 +1,6 @@
-// The Fresnel functions of kernels/fresnel-inl.h over lists of inputs, on the target chosen at the moment, and the
-// equations that judge them.
+// The Fresnel functions of kernels/fresnel-inl.h over lists of inputs, on the target chosen at the moment.
 #pragma once
 
-#include <complex>
 #include <vector>
 
 #include "core/settings.h"
@@ -26,8 +24,5 @@ struct DielectricOutputs {
 
 DielectricOutputs dielectrics(Fresnel model, FresnelInputs in);
 std::vector<float> conductors(Fresnel model, FresnelInputs in);
-
-// Fresnel's equations as they stand, in complex double, for a relative index of any kind: mean of both polarisations.
-double fresnel_equations(double c, std::complex<double> index);
 
 }  // namespace lanewise::test

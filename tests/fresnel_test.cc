@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 
+#include "core/verify/exact_functions.h"
 #include "kernels/reference/fresnel.h"
 #include "tests/fresnel_harness.h"
 #include "tests/kernel_harness.h"
@@ -15,7 +16,7 @@ using Inputs = test::FresnelInputs;
 using Outputs = test::DielectricOutputs;
 using test::conductors;
 using test::dielectrics;
-using test::fresnel_equations;
+using verify::fresnel_equations;
 
 const std::vector<float> kCosines = {1,    0.9999999f, 0.99f, 0.9f,  0.8f,  0.7454f, 0.7f,    0.6f,
                                      0.5f, 0.3f,       0.2f,  0.05f, 0.01f, 1.7e-3f, 1.7e-4f, 1e-6f};

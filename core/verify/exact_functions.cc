@@ -64,4 +64,11 @@ ExactFunction exact_function(Function f) {
   return nullptr;
 }
 
+double fresnel_equations(double c, std::complex<double> index) {
+  const std::complex<double> cos_t = std::sqrt(1.0 - (1 - c * c) / (index * index));
+  const std::complex<double> rs = (c - index * cos_t) / (c + index * cos_t);
+  const std::complex<double> rp = (index * c - cos_t) / (index * c + cos_t);
+  return (std::norm(rs) + std::norm(rp)) / 2;
+}
+
 }  // namespace lanewise::verify

@@ -1,49 +1,17 @@
 #include "core/verify/function_study.h"
 
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "core/types.h"
 #include "core/verify/exact_functions.h"
+#include "core/verify/float_range.h"
 #include "core/verify/ulp.h"
 #include "core/workers.h"
 
 namespace lanewise::verify {
 namespace {
-
-// Floats numbered in rising order, -0 before 0.
-int64_t number_of(float x) {
-  const uint32_t bits = std::bit_cast<uint32_t>(x);
-  const int64_t size = bits & 0x7FFFFFFFu;
-  return bits >> 31 ? -size - 1 : size;
-}
-float float_of(int64_t number) {
-  const uint32_t sign = number < 0 ? 0x80000000u : 0;
-  return std::bit_cast<float>(static_cast<uint32_t>(number < 0 ? -number - 1 : number) | sign);
-}
-
-// Every stride-th float from number first to number last.
-struct Inputs {
-  int64_t first, last;
-  uint64_t stride;
-
-  uint64_t size() const { return static_cast<uint64_t>(last - first) / stride + 1; }
-  float operator[](uint64_t i) const { return float_of(first + static_cast<int64_t>(i * stride)); }
-};
-
-std::vector<Inputs> inputs_of(const FunctionInfo& f, uint64_t stride) {
-  const int64_t lo = number_of(f.lo), hi = number_of(f.hi);
-  std::vector<Inputs> inputs = {{lo, hi, stride}};
-  if (stride == 1) return inputs;
-  constexpr int64_t kAround = 1 << 14;
-  for (const float center : {f.lo, f.hi, f.hard}) {
-    const int64_t at = number_of(center);
-    inputs.push_back({std::max(lo, at - kAround), std::min(hi, at + kAround), 1});
-  }
-  return inputs;
-}
 
 struct Sums {
   double max = 0, sum = 0;
@@ -68,7 +36,7 @@ class Study {
  public:
   Study(const std::vector<std::string>& targets, uint32_t threads) : targets_(targets), threads_(threads) {}
 
-  void add(const FunctionInfo& f, const Inputs& inputs, uint64_t begin, uint64_t end, std::vector<Sums>& sums) {
+  void add(const FunctionInfo& f, const FloatRange& inputs, uint64_t begin, uint64_t end, std::vector<Sums>& sums) {
     const size_t chunks = (end - begin + kChunk - 1) / kChunk;
     const auto each_chunk = [&](auto&& work) {
       const auto body = [&](size_t chunk, uint32_t) -> uint64_t {
@@ -119,14 +87,14 @@ std::vector<FunctionError> study_functions(const std::vector<std::string>& targe
   const auto start = std::chrono::steady_clock::now();
   uint64_t total = 0, done = 0;
   for (const FunctionInfo& f : kFunctions) {
-    for (const Inputs& inputs : inputs_of(f, stride)) total += inputs.size();
+    for (const FloatRange& inputs : float_ranges(f.lo, f.hi, f.hard, stride)) total += inputs.size();
   }
   Study study(targets, threads);
   std::vector<FunctionError> result;
   for (const FunctionInfo& f : kFunctions) {
     std::vector<Sums> sums(targets.size());
     uint64_t n = 0;
-    for (const Inputs& inputs : inputs_of(f, stride)) {
+    for (const FloatRange& inputs : float_ranges(f.lo, f.hi, f.hard, stride)) {
       for (uint64_t begin = 0; begin < inputs.size(); begin += kBlock) {
         const uint64_t end = std::min(begin + kBlock, inputs.size());
         study.add(f, inputs, begin, end, sums);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/verify/exact_functions.h"
 #include "tests/fresnel_harness.h"
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
@@ -11,7 +12,7 @@
 namespace lanewise {
 namespace {
 
-double exact(double c, double eta, double k) { return test::fresnel_equations(c, {eta, k}); }
+double exact(double c, double eta, double k) { return verify::fresnel_equations(c, {eta, k}); }
 
 // The course program's.
 double large_index(double c, double eta, double k) {

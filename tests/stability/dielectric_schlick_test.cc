@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/verify/exact_functions.h"
 #include "tests/fresnel_harness.h"
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
@@ -16,7 +17,7 @@ double schlick(double c, double index) {
   return f0 + (1 - f0) * std::pow(1 - c, 5);
 }
 
-double fresnel(double c, double index) { return test::fresnel_equations(c, index); }
+double fresnel(double c, double index) { return verify::fresnel_equations(c, index); }
 
 // The share that is reflected of light that comes evenly from everywhere.
 template <class F>

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/verify/exact_functions.h"
 #include "tests/fresnel_harness.h"
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
@@ -23,7 +24,7 @@ float naive_reflectance(float c, float index) {
 }
 
 double exact_reflectance(double c, double index) {
-  return index * index * (1 - c * c) >= 1 ? 1 : test::fresnel_equations(c, 1 / index);
+  return index * index * (1 - c * c) >= 1 ? 1 : verify::fresnel_equations(c, 1 / index);
 }
 
 // The cosines up to `band` floats to either side of the critical one, from total reflection on.
