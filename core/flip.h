@@ -1,7 +1,7 @@
-// FLIP: how large the difference looks to someone who flips between a picture and its reference in place.
-// Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference Evaluator for Alternating
-// Images, HPG 2020; for high dynamic range Andersson, Nilsson, Shirley and Akenine-Moeller, Visualizing Errors in Rendered
-// High Dynamic Range Images, Eurographics 2021 (short papers).
+// FLIP: how large the difference looks to someone who flips between a picture and its reference in place. Andersson,
+// Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference Evaluator for Alternating Images, HPG
+// 2020; for high dynamic range Andersson, Nilsson, Shirley and Akenine-Moeller, Visualizing Errors in Rendered High
+// Dynamic Range Images, Eurographics 2021 (short papers).
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,10 @@ struct FlipExposures {
   uint32_t count = 1;  // evenly spaced, both ends included
 };
 
-// Errors per pixel in [0, 1], rows from the top. For all functions: pictures are linear radiance, not empty, of one size
-// (otherwise Error, naming both); values below 0 count as 0. A pixel with a NaN in either picture has error 1 and is black
-// to its neighbours. The result does not depend on the number of threads. pixels_per_degree: 5 or more, of visual angle.
+// Errors per pixel in [0, 1], rows from the top. For all functions: pictures are linear radiance, not empty, of one
+// size (otherwise Error, naming both); values below 0 count as 0. A pixel with a NaN in either picture has error 1 and
+// is black to its neighbours. The result does not depend on the number of threads. pixels_per_degree: 5 or more, of
+// visual angle.
 
 // Of what a display shows: radiance clipped to [0, 1].
 std::vector<float> flip_ldr(const Image& test, const Image& reference, double pixels_per_degree = kFlipPixelsPerDegree);
@@ -31,9 +32,9 @@ std::vector<float> flip_ldr(const Image& test, const Image& reference, double pi
 std::vector<float> flip_hdr(const Image& test, const Image& reference, const FlipExposures& exposures,
                             double pixels_per_degree = kFlipPixelsPerDegree);
 
-// From that which brings the reference's brightest pixel to 0.85 of white to that which brings its median there, about a
-// stop apart (section 3 of the HDR paper). Black pixels are left out of the median if it would be 0; a reference that is
-// black everywhere is shown as it is.
+// From that which brings the reference's brightest pixel to 0.85 of white to that which brings its median there, about
+// a stop apart (section 3 of the HDR paper). Black pixels are left out of the median if it would be 0; a reference that
+// is black everywhere is shown as it is.
 FlipExposures flip_exposures(const Image& reference);
 
 // Pooled errors. Weighted: the error that pixels of a quarter, half, three quarters of all the error lie at or below.

@@ -1,5 +1,5 @@
-// The colour spaces of FLIP, and how far two colours are apart in them. Section 4.1 of the HPG paper; the constants of sRGB
-// and D65 are those of the authors' code.
+// The colour spaces of FLIP, and how far two colours are apart in them. Section 4.1 of the HPG paper; the constants of
+// sRGB and D65 are those of the authors' code.
 #pragma once
 
 #include <array>

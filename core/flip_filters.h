@@ -10,15 +10,15 @@ namespace lanewise::flip {
 // Weights at -radius .. radius.
 using Weights = std::vector<float>;
 
-// What the eye resolves (HPG paper, section 4.1.1): Gaussians, normalised over the plane. That of the blue-yellow opponent is
-// the sum of two.
+// What the eye resolves (HPG paper, section 4.1.1): Gaussians, normalised over the plane. That of the blue-yellow
+// opponent is the sum of two.
 struct ContrastFilters {
   Weights lightness, red_green, blue_yellow_narrow, blue_yellow_wide;
 };
 ContrastFilters contrast_filters(double pixels_per_degree);
 
-// What it notices (section 4.2): edges by the first derivative of a Gaussian, points by the second, along one axis, and the
-// Gaussian along the other. Positive and negative weights of the derivatives sum to 1 and -1.
+// What it notices (section 4.2): edges by the first derivative of a Gaussian, points by the second, along one axis, and
+// the Gaussian along the other. Positive and negative weights of the derivatives sum to 1 and -1.
 struct FeatureFilters {
   Weights gaussian, edge, point;
 };

@@ -35,7 +35,8 @@ struct SeenRow {
   std::vector<float> edge, point;  // how strong the features are
 };
 
-// A band of rows, with those above and below that its filters reach. Pictures go on beyond their borders as they end there.
+// A band of rows, with those above and below that its filters reach. Pictures go on beyond their borders as they end
+// there.
 class SeenBand {
  public:
   // Rows first to last - 1.

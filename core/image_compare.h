@@ -19,7 +19,8 @@ struct ImageComparison {
 // Throws Error, naming both sizes, unless they are the same.
 void check_same_size(const Image& a, const Image& b);
 
-// The pictures must be of one size (check_same_size) and not empty. NaN and Inf are not left out: they show up in the means.
+// The pictures must be of one size (check_same_size) and not empty. NaN and Inf are not left out: they show up in the
+// means.
 ImageComparison compare_images(const Image& a, const Image& b);
 
 }  // namespace lanewise

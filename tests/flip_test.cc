@@ -38,7 +38,8 @@ Image picture(const std::string& change, bool lamp) {
 
 float at(const std::vector<float>& errors, uint32_t x, uint32_t y) { return errors[size_t{y} * kWidth + x]; }
 
-// Floats hold these to some 3e-5: rounding makes differences of 1e-9 between features that are equal, and FLIP their root.
+// Floats hold these to some 3e-5: rounding makes differences of 1e-9 between features that are equal, and FLIP their
+// root.
 void check_values(const std::vector<float>& errors, double mean, double at_46_12, double at_69_40) {
   CHECK(summarize_flip(errors).mean == doctest::Approx(mean).epsilon(5e-5));
   CHECK(at(errors, 46, 12) == doctest::Approx(at_46_12).epsilon(1e-4));

@@ -36,7 +36,8 @@ def main():
                 exposures = ''
                 if lamp:
                     exposures = f' {used["startExposure"]:.6f}, {used["stopExposure"]:.6f}, {used["numExposures"]}'
-                print(f'    {{"{change}", {ppd}, {errors.mean():.9f}, {errors[12, 46]:.6f}, {errors[40, 69]:.6f}}},{exposures}')
+                print(f'    {{"{change}", {ppd}, {errors.mean():.9f}, {errors[12, 46]:.6f}, {errors[40, 69]:.6f}}},'
+                      f'{exposures}')
 
 
 if __name__ == '__main__':

@@ -25,8 +25,8 @@ void add_flip(nlohmann::ordered_json& json, const FlipReport& report);
 // One line.
 std::string flip_line(const FlipReport& report);
 
-// For a file that holds colours (.png) those of magma, black for 0 and pale yellow for 1, as in the papers; for one of floats
-// the errors themselves, in every channel.
+// For a file that holds colours (.png) those of magma, black for 0 and pale yellow for 1, as in the papers; for one of
+// floats the errors themselves, in every channel.
 Image flip_map(const std::string& path, const FlipReport& report, uint32_t width, uint32_t height);
 
 }  // namespace lanewise

@@ -28,7 +28,8 @@ struct FloatRange {
   float operator[](uint64_t i) const { return float_of(first + static_cast<int64_t>(i * stride)); }
 };
 
-// Every stride-th float of [lo, hi]; with a stride above 1 also the 2^14 nearest to lo, hi and what is hard, on either side.
+// Every stride-th float of [lo, hi]; with a stride above 1 also the 2^14 nearest to lo, hi and what is hard, on either
+// side.
 inline std::vector<FloatRange> float_ranges(float lo, float hi, float hard, uint64_t stride) {
   const int64_t first = number_of(lo), last = number_of(hi);
   std::vector<FloatRange> ranges = {{first, last, stride}};
