@@ -1,24 +1,37 @@
 // Which random numbers each decision draws. All come in sets of four, a pure function of (seed, pixel, sample, set), so
-// a picture depends on nothing else; no two decisions share a set. With --sampler sobol a set is four dimensions of a
-// low-discrepancy sequence over the pixel's samples, so that what is decided together lies in one set.
+// a picture depends on nothing else; no two decisions share a number. With --sampler sobol a set is four dimensions of a
+// low-discrepancy sequence over the pixel's samples, so that what acts together best lies in one set: the direction in which a path
+// comes to a vertex, and the light sample that it meets there.
 #pragma once
 
 #include <cstdint>
 
+#include "core/path_state.h"
+
 namespace lanewise {
 
-// Sets within a bounce; kSetLight has one for each light and sample of it: add light * light_samples + light_sample.
+// Sets of a bounce; kSetLight has one for each light and sample of it but the very first, which is kSetPath's: add
+// light * light_samples + light_sample.
 enum RandomPurpose : uint32_t {
-  kSetCamera = 0,             // x and y in the pixel, u and v on the lens (bounce 0 only)
-  kSetBsdf = 1,               // two for the direction, one for the lobe, one for the roulette
-  kSetLight = 2,              // choice of the patch, u and v on it
-  kSetsPerBounce = 1u << 16,  // so at most 65,534 light samples a vertex, and 65,535 bounces
+  kSetPath =
+      0,  // the way to the vertex (place in the pixel, or direction from the vertex before); its first light sample
+  kSetChoice = 1,             // lobe, roulette, patch of the first light sample
+  kSetLens = 2,               // point on the lens (bounce 0 only)
+  kSetLight = 3,              // a light sample
+  kSetsPerBounce = 1u << 16,  // so at most 65,533 light samples a vertex, and 65,535 bounces
 };
 
-// Within a set of kSetBsdf: which of the four.
-enum BsdfDraw : uint32_t { kDrawU = 0, kDrawV = 1, kDrawLobe = 2, kDrawRoulette = 3 };
+// Which of a set's four numbers.
+enum PathDraw : uint32_t { kDrawU = 0, kDrawV = 1 };
+enum ChoiceDraw : uint32_t { kDrawLobe = 0, kDrawRoulette = 1, kDrawFirstPatch = 2 };
+enum LightDraw : uint32_t { kDrawPatch = 0, kDrawLightU = 2, kDrawLightV = 3 };
 
 constexpr uint32_t random_set(uint32_t bounce, uint32_t purpose) { return bounce * kSetsPerBounce + purpose; }
+
+// Of the direction in which a path leaves the vertex of that bounce.
+constexpr uint32_t direction_set(uint32_t bounce) { return random_set(bounce + 1, kSetPath); }
+
+constexpr bool is_first_light_sample(const Step& step) { return step.light == 0 && step.light_sample == 0; }
 
 // A Sobol sequence is this long; a pixel's further samples come from further sequences, scrambled afresh. Samples
 // first .. first + 2^k - 1 are a net of it (at their best together) where first is a multiple of 2^k.

@@ -47,15 +47,16 @@ void Generate(const Plan& plan, const PathState& s, Range range) {
   const VF lens_radius = Splat(camera.lens_radius), lens_angle = Splat(camera.lens_angle);
   const VF zero = hn::Zero(DF()), one = Splat(1.0f);
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
-    const Random4 random = DrawRandom(plan, s, i, kSetCamera);
-    const VF x = hn::Sub(hn::Add(hn::Load(DF(), s.o_x + i), random.u[0]), half_width);
-    const VF y = hn::Sub(half_height, hn::Add(hn::Load(DF(), s.o_y + i), random.u[1]));
+    const Random4 random = DrawRandom(plan, s, i, kSetPath);
+    const VF x = hn::Sub(hn::Add(hn::Load(DF(), s.o_x + i), random.u[kDrawU]), half_width);
+    const VF y = hn::Sub(half_height, hn::Add(hn::Load(DF(), s.o_y + i), random.u[kDrawV]));
     VF across = hn::Mul(x, pixel), upwards = hn::Mul(y, pixel);
     Vec3 o = eye;
     if (has_lens) {
-      const VF r = hn::Sqrt(random.u[2]);
+      const Random4 on_lens = DrawRandom(plan, s, i, kSetLens);
+      const VF r = hn::Sqrt(on_lens.u[kDrawU]);
       VF sin, cos;
-      SinCos2Pi(random.u[3], sin, cos);
+      SinCos2Pi(on_lens.u[kDrawV], sin, cos);
       const VF lens_x = hn::Mul(r, cos), lens_y = hn::Mul(r, sin);
       o = MulAdd(hn::Mul(lens_radius, lens_x), right, MulAdd(hn::Mul(lens_radius, lens_y), up, eye));
       // All rays of this x and y meet at the focal distance.

@@ -46,16 +46,16 @@ HWY_INLINE LightPoint SamplePatch(const Plan& plan, const PlanLight& light, cons
     is_triangle = hn::Ne(Splat(patches->is_triangle), hn::Zero(DF()));
   } else {
     const float* base = patches->corner;
-    const VI at = hn::Mul(FindPatch(base, light, random.u[0]), hn::Set(DI(), kLightPatchStride));
+    const VI at = hn::Mul(FindPatch(base, light, random.u[kDrawPatch]), hn::Set(DI(), kLightPatchStride));
     corner = GatherVec3(base + kCorner, at), e1 = GatherVec3(base + kE1, at), e2 = GatherVec3(base + kE2, at);
     n = GatherVec3(base + kPatchNormal, at);
     is_triangle = hn::Ne(hn::GatherIndex(DF(), base + kIsTriangle, at), hn::Zero(DF()));
   }
   // A triangle is the parallelogram's half with u + v <= 1; the square root makes u's density fit.
   const VF one = Splat(1.0f);
-  const VF root = hn::Sqrt(random.u[1]);
-  const VF u = hn::IfThenElse(is_triangle, hn::Sub(one, root), random.u[1]);
-  const VF v = hn::IfThenElse(is_triangle, hn::Mul(random.u[2], root), random.u[2]);
+  const VF root = hn::Sqrt(random.u[kDrawLightU]);
+  const VF u = hn::IfThenElse(is_triangle, hn::Sub(one, root), random.u[kDrawLightU]);
+  const VF v = hn::IfThenElse(is_triangle, hn::Mul(random.u[kDrawLightV], root), random.u[kDrawLightV]);
   const Vec3 q = MulAdd(u, e1, MulAdd(v, e2, corner));
   return {MulAdd(Splat(light.err), n, q), n};
 }
@@ -63,8 +63,8 @@ HWY_INLINE LightPoint SamplePatch(const Plan& plan, const PlanLight& light, cons
 // Uniform on the sphere (Archimedes): z is uniform in [-1, 1].
 HWY_INLINE LightPoint SampleSphereLight(const PlanLight& light, const Random4& random) {
   VF sin, cos;
-  SinCos2Pi(random.u[2], sin, cos);
-  const VF u = random.u[1], one = Splat(1.0f);
+  SinCos2Pi(random.u[kDrawLightV], sin, cos);
+  const VF u = random.u[kDrawLightU], one = Splat(1.0f);
   const VF r = hn::Mul(Splat(2.0f), hn::Sqrt(hn::Mul(u, hn::Sub(one, u))));  // sqrt(1 - z^2) without its cancellation
   const Vec3 n = {hn::Mul(r, cos), hn::Mul(r, sin), hn::NegMulAdd(Splat(2.0f), u, one)};
   return {MulAdd(Splat(light.radius + light.err), n, SplatVec3(light.center)), n};

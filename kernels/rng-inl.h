@@ -125,10 +125,27 @@ HWY_INLINE Random4 DrawRandom(Sampler sampler, VU pixel, VU sample, uint32_t set
   return {{ToUniform(hash.x), ToUniform(hash.y), ToUniform(hash.z), ToUniform(hash.w)}};
 }
 
-// The set of the paths at slot i.
+// A set of the paths at slot i.
+HWY_INLINE Random4 DrawSet(const Plan& plan, const PathState& s, size_t i, uint32_t set) {
+  return DrawRandom(plan.settings.sampler, hn::Load(DU(), s.pixel + i), hn::Load(DU(), s.sample + i), set,
+                    plan.settings.seed);
+}
+// Of their bounce.
 HWY_INLINE Random4 DrawRandom(const Plan& plan, const PathState& s, size_t i, uint32_t purpose) {
-  return DrawRandom(plan.settings.sampler, hn::Load(DU(), s.pixel + i), hn::Load(DU(), s.sample + i),
-                    random_set(s.step.bounce, purpose), plan.settings.seed);
+  return DrawSet(plan, s, i, random_set(s.step.bounce, purpose));
+}
+// Of the direction in which they go on.
+HWY_INLINE Random4 DrawDirection(const Plan& plan, const PathState& s, size_t i) {
+  return DrawSet(plan, s, i, direction_set(s.step.bounce));
+}
+// Of the light sample of their step: LightDraw.
+HWY_INLINE Random4 DrawLight(const Plan& plan, const PathState& s, size_t i) {
+  if (!is_first_light_sample(s.step)) {
+    return DrawRandom(plan, s, i, kSetLight + s.step.light * plan.settings.light_samples + s.step.light_sample);
+  }
+  Random4 random = DrawRandom(plan, s, i, kSetPath);
+  if (plan.lights[0].patches > 1) random.u[kDrawPatch] = DrawRandom(plan, s, i, kSetChoice).u[kDrawFirstPatch];
+  return random;
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

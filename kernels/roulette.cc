@@ -17,7 +17,7 @@ void Roulette(const Plan& plan, const PathState& s, Range range) {
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const VF q = hn::Min(Splat(1.0f), MaxElement(beta));
-    const VF u = DrawRandom(plan, s, i, kSetBsdf).u[kDrawRoulette];
+    const VF u = DrawRandom(plan, s, i, kSetChoice).u[kDrawRoulette];
     // q = 0 only where beta is 0, and then u < q fails: the quotient is never used.
     const VF scale = hn::IfThenElseZero(hn::Lt(u, q), hn::Div(Splat(1.0f), hn::Max(q, Splat(1e-30f))));
     StoreVec3(Scale(scale, beta), s.beta_r, s.beta_g, s.beta_b, i);

@@ -14,13 +14,12 @@ namespace lanewise {
 namespace HWY_NAMESPACE {
 
 void SampleHemisphere(const Plan& plan, const PathState& s, Range range) {
-  const uint32_t set = kSetLight + s.step.light * plan.settings.light_samples + s.step.light_sample;
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
     const Vec3 normal = ViewerSide(LoadVec3(s.s_x, s.s_y, s.s_z, i), LoadVec3(s.d_x, s.d_y, s.d_z, i));
-    const Random4 random = DrawRandom(plan, s, i, set);
+    const Random4 random = DrawLight(plan, s, i);
     Vec3 b1, b2;
     Frame(normal, b1, b2);
-    const Vec3 l = ToWorld(UniformHemisphere(random.u[kDrawU], random.u[kDrawV]), b1, b2, normal);
+    const Vec3 l = ToWorld(UniformHemisphere(random.u[kDrawLightU], random.u[kDrawLightV]), b1, b2, normal);
     StoreVec3(l, s.l_x, s.l_y, s.l_z, i);
     hn::Store(Splat(0.5f * kInvPi), DF(), s.l_pdf + i);
   }

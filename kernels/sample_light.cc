@@ -16,10 +16,9 @@ namespace HWY_NAMESPACE {
 void SampleLight(const Plan& plan, const PathState& s, Range range) {
   const DF d;
   const PlanLight& light = plan.lights[s.step.light];
-  const uint32_t set = kSetLight + s.step.light * plan.settings.light_samples + s.step.light_sample;
   const VF area = Splat(light.area), zero = hn::Zero(d);
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
-    const Random4 random = DrawRandom(plan, s, i, set);
+    const Random4 random = DrawLight(plan, s, i);
     const LightPoint at = SampleLightPoint(plan, light, random);
     const Vec3 p = LoadVec3(s.o_x, s.o_y, s.o_z, i);
     const Vec3 n = LoadVec3(s.n_x, s.n_y, s.n_z, i);

@@ -34,7 +34,7 @@ void ShadeDiffuse(const Plan& plan, const PathState& s, Range range) {
   const DF d;
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const Vec3 normal = ViewerSide(LoadVec3(s.s_x, s.s_y, s.s_z, i), LoadVec3(s.d_x, s.d_y, s.d_z, i));
-    const Random4 random = DrawRandom(plan, s, i, kSetBsdf);
+    const Random4 random = DrawDirection(plan, s, i);
     const Vec3 local = CosineHemisphere(random.u[kDrawU], random.u[kDrawV]);
     Vec3 b1, b2;
     Frame(normal, b1, b2);

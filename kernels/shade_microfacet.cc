@@ -132,7 +132,7 @@ void ShadeMicrofacet(const Plan& plan, const PathState& s, Range range) {
     const Vec3 wo = {hn::Neg(Dot(d, b1)), hn::Neg(Dot(d, b2)), hn::Max(hn::Neg(Dot(d, normal)), zero)};
     const Metal metal(plan, s, i);
     const VF alpha = metal.alpha;
-    const Random4 random = DrawRandom(plan, s, i, kSetBsdf);
+    const Random4 random = DrawDirection(plan, s, i);
     const VF u = random.u[kDrawU], v = random.u[kDrawV];
     const LobeSample sample = strategy == BsdfSampling::kCosine
                                   ? SampleCosine(wo, alpha, u, v)

@@ -13,14 +13,15 @@ namespace lanewise::reference {
 template <class T>
 void generate(const Plan& plan, Path<T>& p) {
   const PlanCamera& camera = plan.camera;
-  const Random4<T> random = draw_random(plan, p, kSetCamera);
-  const T x = T(p.pixel % plan.settings.width) + random.u[0] - T(0.5) * T(plan.settings.width);
-  const T y = T(0.5) * T(plan.settings.height) - (T(p.pixel / plan.settings.width) + random.u[1]);
+  const Random4<T> random = draw_random(plan, p, kSetPath);
+  const T x = T(p.pixel % plan.settings.width) + random.u[kDrawU] - T(0.5) * T(plan.settings.width);
+  const T y = T(0.5) * T(plan.settings.height) - (T(p.pixel / plan.settings.width) + random.u[kDrawV]);
   const T pixel = T(camera.pixel);
   const Vec3<T> right = vec3<T>(camera.right), up = vec3<T>(camera.up), forward = vec3<T>(camera.forward);
   Vec3<T> o = vec3<T>(camera.eye), d = x * pixel * right + y * pixel * up + forward;
   if (camera.lens_radius > 0) {
-    const T r = std::sqrt(random.u[2]), phi = 2 * std::numbers::pi_v<T> * random.u[3];
+    const Random4<T> on_lens = draw_random(plan, p, kSetLens);
+    const T r = std::sqrt(on_lens.u[kDrawU]), phi = 2 * std::numbers::pi_v<T> * on_lens.u[kDrawV];
     const Vec3<T> on_unit_lens = r * std::cos(phi) * right + r * std::sin(phi) * up;
     o += T(camera.lens_radius) * on_unit_lens;
     d -= T(camera.lens_angle) * on_unit_lens;

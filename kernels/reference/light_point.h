@@ -21,8 +21,8 @@ template <class T>
 LightPoint<T> sample_patch(const Plan& plan, const PlanLight& light, const Random4<T>& random) {
   const LightPatch* patch = &plan.light_patches[light.first_patch];
   const LightPatch* last = patch + light.patches - 1;
-  while (patch < last && random.u[0] >= T(patch->cdf)) ++patch;
-  T u = random.u[1], v = random.u[2];
+  while (patch < last && random.u[kDrawPatch] >= T(patch->cdf)) ++patch;
+  T u = random.u[kDrawLightU], v = random.u[kDrawLightV];
   if (patch->is_triangle != 0) {
     const T root = std::sqrt(u);
     u = 1 - root;
@@ -34,9 +34,9 @@ LightPoint<T> sample_patch(const Plan& plan, const PlanLight& light, const Rando
 
 template <class T>
 LightPoint<T> sample_sphere_light(const PlanLight& light, const Random4<T>& random) {
-  const T u = random.u[1];
+  const T u = random.u[kDrawLightU];
   const T z = 1 - 2 * u, r = 2 * std::sqrt(u * (1 - u));
-  const T phi = 2 * std::numbers::pi_v<T> * random.u[2];
+  const T phi = 2 * std::numbers::pi_v<T> * random.u[kDrawLightV];
   const Vec3<T> n(r * std::cos(phi), r * std::sin(phi), z);
   return {vec3<T>(light.center) + T(light.radius + light.err) * n, n};
 }

@@ -67,9 +67,28 @@ Random4<T> draw_random(Sampler sampler, uint32_t pixel, uint32_t sample, uint32_
 }
 
 template <class T>
+Random4<T> draw_set(const Plan& plan, const Path<T>& p, uint32_t set) {
+  return draw_random<T>(plan.settings.sampler, p.pixel, p.sample, set, plan.settings.seed);
+}
+
+template <class T>
 Random4<T> draw_random(const Plan& plan, const Path<T>& p, uint32_t purpose) {
-  return draw_random<T>(plan.settings.sampler, p.pixel, p.sample, random_set(p.step.bounce, purpose),
-                        plan.settings.seed);
+  return draw_set(plan, p, random_set(p.step.bounce, purpose));
+}
+
+template <class T>
+Random4<T> draw_direction(const Plan& plan, const Path<T>& p) {
+  return draw_set(plan, p, direction_set(p.step.bounce));
+}
+
+template <class T>
+Random4<T> draw_light(const Plan& plan, const Path<T>& p) {
+  if (!is_first_light_sample(p.step)) {
+    return draw_random(plan, p, kSetLight + p.step.light * plan.settings.light_samples + p.step.light_sample);
+  }
+  Random4<T> random = draw_random(plan, p, kSetPath);
+  random.u[kDrawPatch] = draw_random(plan, p, kSetChoice).u[kDrawFirstPatch];
+  return random;
 }
 
 }  // namespace lanewise::reference

@@ -10,8 +10,7 @@ namespace lanewise::reference {
 template <class T>
 void sample_light(const Plan& plan, Path<T>& p) {
   const PlanLight& light = plan.lights[p.step.light];
-  const uint32_t set = kSetLight + p.step.light * plan.settings.light_samples + p.step.light_sample;
-  const Random4<T> random = draw_random(plan, p, set);
+  const Random4<T> random = draw_light(plan, p);
   const LightPoint<T> at = sample_light_point(plan, light, random);
   const Vec3<T> hit = LANEWISE_VEC3(p, o);
   const Vec3<T> origin = offset_origin(hit, LANEWISE_VEC3(p, n), p.err, at.q - hit);

@@ -23,7 +23,7 @@ void light_diffuse(const Plan& plan, Path<T>& p) {
 template <class T>
 void shade_diffuse(const Plan& plan, Path<T>& p) {
   const Vec3<T> normal = viewer_side(LANEWISE_VEC3(p, s), LANEWISE_VEC3(p, d));
-  const auto random = draw_random(plan, p, kSetBsdf);
+  const auto random = draw_direction(plan, p);
   const Vec3<T> local = cosine_hemisphere(random.u[kDrawU], random.u[kDrawV]);
   Vec3<T> b1, b2;
   frame(normal, b1, b2);

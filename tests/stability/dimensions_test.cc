@@ -49,7 +49,7 @@ struct Decision {
   std::string name;
   uint32_t pixel = 1000;
   uint32_t lag = 0;
-  uint32_t set = random_set(2, kSetBsdf);
+  uint32_t set = random_set(2, kSetPath);
   uint64_t seed = 0;
   Sampler sampler = Sampler::kRandom;
 };
@@ -116,7 +116,7 @@ void check_independent(Sampler sampler) {
   // Not here: samples and seeds exactly 2^31 apart, which the hash does not part well (correlations of 0.03 and 0.25). A set
   // of a Sobol sequence is too uniform for chance, which the test lets pass.
   Decision base{.name = "base"};
-  std::vector<Decision> others = {{.name = "camera", .set = random_set(2, kSetCamera)},
+  std::vector<Decision> others = {{.name = "camera", .set = random_set(2, kSetLens)},
                                   {.name = "next pixel", .pixel = base.pixel + 1},
                                   {.name = "next row", .pixel = base.pixel + 480},
                                   {.name = "pixel 2^16 on", .pixel = base.pixel + (1 << 16)},
@@ -133,7 +133,7 @@ void check_independent(Sampler sampler) {
     others.push_back({.name = "light", .set = random_set(2, kSetLight + light)});
   }
   for (const uint32_t bounce : {0u, 1u, 3u, 4u, 7u, 1000u, 65534u}) {
-    others.push_back({.name = "bounce", .set = random_set(bounce, kSetBsdf)});
+    others.push_back({.name = "bounce", .set = random_set(bounce, kSetPath)});
   }
   base.sampler = sampler;
   for (Decision& other : others) other.sampler = sampler;
