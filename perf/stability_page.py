@@ -13,7 +13,6 @@ import json
 import math
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -24,13 +23,14 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 
+from svg_text import HEADER, svg_text  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 STYLES = {
     "naive": {"color": "#c2410c", "marker": "o", "linestyle": "--"},
     "ours": {"color": "#1d4ed8", "marker": "s", "linestyle": "-"},
 }
-# Text stays text: a sixth of the size. It is laid out for a wide font, so a narrower one fits too. A fixed salt gives the
-# same file for the same numbers.
+# Text stays text: a sixth of the size. It is laid out for a wide font, so a narrower one fits too.
 plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "lanewise", "font.size": 9, "axes.grid": True,
                      "grid.color": "#e5e7eb", "axes.axisbelow": True, "axes.edgecolor": "#6b7280",
                      "axes.spines.top": False, "axes.spines.right": False})
@@ -107,12 +107,7 @@ def draw(curve):
     title = textwrap.fill(curve["title"], 62)
     figure.suptitle(title, fontsize=10, fontweight="bold", x=0.01, ha="left")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1), frameon=False, fontsize=8.5, handlelength=2.6)
-    with tempfile.NamedTemporaryFile(suffix=".svg") as file:
-        figure.savefig(file.name, metadata={"Date": None, "Creator": None})
-        plt.close(figure)
-        svg = pathlib.Path(file.name).read_text(encoding="utf-8")
-    svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg[svg.index("<svg"):], flags=re.DOTALL)
-    return re.sub(r"(\d+\.\d\d)\d+", r"\1", svg)  # a hundredth of a point is enough
+    return svg_text(figure)
 
 
 def number(value):
@@ -187,7 +182,7 @@ def main():
     folder = arguments.out / "stability"
     folder.mkdir(parents=True, exist_ok=True)
     for curve, chart in zip(curves, charts):
-        (folder / f"{curve['name']}.svg").write_text('<?xml version="1.0" encoding="utf-8"?>\n' + chart, encoding="utf-8")
+        (folder / f"{curve['name']}.svg").write_text(HEADER + chart, encoding="utf-8")
     result = arguments.out / "stability.html"
     result.write_text(page(curves, charts), encoding="utf-8")
     print(f"{result}: {len(curves)} charts, {result.stat().st_size / 1024:.0f} KiB")
