@@ -33,6 +33,10 @@ class Camera:
     tan_x: float  # half the picture's width at distance 1
     tan_y: float
 
+    def framed(self, width, height):
+        """As wide, with square pixels."""
+        return Camera(self.eye, self.target, self.tan_x, self.tan_x * height / width)
+
 
 class Scene:
     def __init__(self, path):

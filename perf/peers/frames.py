@@ -10,91 +10,45 @@ loading, building of trees and writing of files. Before any time is told, the pi
 of the difference, and 0.2% for Cycles' tessellated spheres, are what they may be apart. At 64 samples a pixel only the fastest
 peer runs unless --full asks for all. Renderers that are not installed are left out, and that is said.
 """
-import json
-import os
 import pathlib
-import subprocess
 import sys
-import tempfile
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 import numpy as np  # noqa: E402
 
 import collada  # noqa: E402
 import lanewise  # noqa: E402
+import peer  # noqa: E402
 import study  # noqa: E402
 from study import plt  # noqa: E402
 
 WIDTH, HEIGHT, DEPTH, THREADS = 480, 360, 5, 2
 FASTEST = 'mitsuba llvm_ad_rgb'
-PEERS = {FASTEST: 'venv', 'mitsuba scalar_rgb': 'venv', 'cycles': 'venv-cycles'}
 LABELS = {FASTEST: 'Mitsuba 3 llvm_ad_rgb', 'mitsuba scalar_rgb': 'Mitsuba 3 scalar_rgb', 'cycles': 'Cycles'}
 AIMS = {'CBspheres': 10, 'CBbunny_microfacet_cu': 3, 'CBdragon_microfacet_au': 3}
-LLVM = ['/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1', '/usr/lib/llvm-19/lib/libLLVM.so.1']
 
 
-class Peer:
-    """A renderer at work in a process of its own."""
+class Loaded:
+    """A peer under this study's settings."""
 
-    def __init__(self, name, python):
-        environment = dict(os.environ)
-        llvm = [path for path in LLVM if os.path.exists(path)]
-        if llvm:
-            environment.setdefault('DRJIT_LIBLLVM_PATH', llvm[0])
-        self.name, self.log = name, tempfile.TemporaryFile('w+')
-        worker = pathlib.Path(__file__).with_name('frames_worker.py')
-        self.process = subprocess.Popen([python, worker, name], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        stderr=self.log, text=True, env=environment)
-        self.version = self._answer()['version']
+    def __init__(self, renderer):
+        self.renderer, self.version, self.close = renderer, renderer.version, renderer.close
 
     def load(self, scene, view):
-        self._ask(scene=str(scene), view=view, width=WIDTH, height=HEIGHT, threads=THREADS)
+        self.renderer.load(scene, view, WIDTH, HEIGHT, THREADS)
 
     def render(self, samples, seed):
-        with tempfile.TemporaryDirectory() as folder:
-            picture = pathlib.Path(folder) / 'picture.npy'
-            seconds = self._ask(depth=DEPTH, samples=samples, seed=seed, picture=str(picture))['seconds']
-            return seconds, np.load(picture)
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
-
-    def _ask(self, **request):
-        self.process.stdin.write(json.dumps(request) + '\n')
-        self.process.stdin.flush()
-        return self._answer()
-
-    def _answer(self):
-        line = self.process.stdout.readline()
-        if not line:
-            self.log.seek(0)
-            raise RuntimeError(f'{self.name} ended:\n' + ''.join(self.log.readlines()[-15:]))
-        return json.loads(line)
+        return self.renderer.render(DEPTH, samples, seed)
 
 
 class Lanewise:
     def load(self, scene, view):
-        self.scene, self.camera = scene, collada.Scene(scene).camera(view)
+        self.scene, self.camera = scene, collada.Scene(scene).camera(view).framed(WIDTH, HEIGHT)
 
     def render(self, samples, seed):
         picture, stats = lanewise.render(self.scene, '-r', WIDTH, HEIGHT, '-s', samples, '-m', DEPTH, '-t', THREADS,
                                          '--normals', 'flat', '--seed', seed, camera=self.camera)
         return stats['seconds']['render'], picture
-
-
-def start_peers():
-    peers = {}
-    for name, folder in PEERS.items():
-        python = lanewise.ROOT / 'build-peers' / folder / 'bin' / 'python'
-        if not python.exists():
-            print(f'{LABELS[name]}: left out, it is not installed; perf/peers/setup --all installs it')
-            continue
-        try:
-            peers[name] = Peer(name, python)
-        except RuntimeError as error:
-            print(f'{LABELS[name]}: left out, {error}')
-    return peers
 
 
 def mean_and_error(pictures):
@@ -205,7 +159,7 @@ def main():
     arguments = parser.parse_args()
     if arguments.rounds < 2:
         parser.error('--rounds: two at least, for the pictures\' noise is known by their spread')
-    peers = start_peers()
+    peers = {name: Loaded(each) for name, each in peer.start_peers(LABELS).items()}
     if not peers:
         return 0
     rows = []
@@ -221,9 +175,9 @@ def main():
                 if len(chosen) > 1:
                     rows.append(measure(chosen, scene, samples, arguments.rounds))
     finally:
-        for peer in peers.values():
-            peer.close()
-    versions = {name: peer.version for name, peer in peers.items()}
+        for each in peers.values():
+            each.close()
+    versions = {name: each.version for name, each in peers.items()}
     draw(rows, peers, study.command_line())
     study.publish('frames', 'Frames against other renderers', section(rows, peers, versions), headlines(rows),
                   {'versions': versions, 'rows': rows})
