@@ -9,7 +9,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / 'build'
-PROGRAM = BUILD / 'lanewise'
+PROGRAM = pathlib.Path(os.environ.get('LANEWISE_BINARY', BUILD / 'lanewise'))
 RESULTS = ROOT / 'perf' / 'results'
 # Not furnace.dae, whose answer is in its first comment.
 SHIPPED = [ROOT / 'scenes' / f'{name}.dae' for name in ('cornell_spheres', 'cornell_metal')]
@@ -40,12 +40,21 @@ def read_pfm(path):
     return np.frombuffer(pixels, '<f4').reshape(height, width, 3)[::-1].copy()
 
 
+def write_pfm(path, picture):
+    height, width, _ = picture.shape
+    path.write_bytes(f'PF\n{width} {height}\n-1\n'.encode() + picture[::-1].astype('<f4').tobytes())
+
+
+def program_version():
+    said = subprocess.run([PROGRAM, '--version'], capture_output=True, text=True, check=True).stdout
+    return said.strip().removeprefix('lanewise ')
+
+
 def version():
     """Of the program, with the commit of the sources around it."""
-    said = subprocess.run([PROGRAM, '--version'], capture_output=True, text=True, check=True).stdout.strip()
     git = ['git', '-C', ROOT, 'rev-parse', '--short', 'HEAD']
     commit = subprocess.run(git, capture_output=True, text=True, check=False)
-    return said.removeprefix('lanewise ') + (f' ({commit.stdout.strip()})' if commit.returncode == 0 else '')
+    return program_version() + (f' ({commit.stdout.strip()})' if commit.returncode == 0 else '')
 
 
 def processor():

@@ -30,6 +30,7 @@ void run(int argc, char** argv) {
   add_profile_command(app, quoted_command_line(argc, argv));
   add_plan_command(app, quoted_command_line(argc, argv));
   add_compare_command(app);
+  add_chart_command(app);
   add_verify_command(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {

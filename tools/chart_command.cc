@@ -1,0 +1,65 @@
+// `lanewise chart`: measuring and drawing are perf/chart.py's; this finds it and hands over to it.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "tools/commands.h"
+
+namespace lanewise {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which has Debian's matplotlib
+
+fs::path own_path() {
+  std::error_code error;
+  const fs::path path = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw Error("/proc/self/exe: " + error.message());
+  return path;
+}
+
+// In the checkout that this was built from, or installed beside the program.
+fs::path find_script(const fs::path& program) {
+  const fs::path places[] = {fs::path(LANEWISE_SOURCE_DIR) / "perf/chart.py",
+                             program.parent_path().parent_path() / "share/lanewise/perf/chart.py"};
+  for (const fs::path& path : places) {
+    if (fs::exists(path)) return path;
+  }
+  throw Error(places[0].string() + ": is not there; lanewise chart needs the scripts in perf/");
+}
+
+void run_chart(const std::vector<std::string>& arguments) {
+  const fs::path program = own_path();
+  const std::string script = find_script(program).string();
+  if (::access(kPython, X_OK) != 0) {
+    throw Error(std::string(kPython) + ": is not there; tools/setup charts installs what lanewise chart needs");
+  }
+  ::setenv("LANEWISE_BINARY", program.c_str(), 1);  // the program that is measured is this one
+  std::vector<char*> argv = {const_cast<char*>(kPython), const_cast<char*>(script.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::cout.flush();
+  ::execv(kPython, argv.data());
+  throw Error(std::string(kPython) + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+void add_chart_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("chart", "Chart error against seconds of rendering, beside other renderers");
+  command->group("Commands");
+  // Every argument, --help too, is the script's.
+  command->set_help_flag();
+  command->prefix_command();
+  command->callback([command] { run_chart(command->remaining()); });
+}
+
+}  // namespace lanewise
