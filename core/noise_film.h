@@ -29,9 +29,10 @@ class NoiseFilm {
   // from 2 kFirstSamples to kMaxSamples; odd ones are rounded down, larger ones cut off.
   NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint32_t max_samples);
 
-  // Where the numbers of a half's samples begin. Not 2^31 apart: a difference in the top bit alone reaches only the top bits
-  // of the hash that makes the random numbers, and leaves the halves correlated.
-  static constexpr uint32_t kHalfStart[kHalves] = {0, 0x9E3779B9};
+  // Where the numbers of a half's samples begin: multiples of 2^16, where a sequence of low discrepancy starts anew. Not 2^31
+  // apart: a difference in the top bit alone reaches only the top bits of the hash that makes the random numbers, and leaves
+  // the halves correlated.
+  static constexpr uint32_t kHalfStart[kHalves] = {0, 0x9E370000};
   static constexpr uint32_t kMaxSamples = 1u << 31;  // of a pixel, so that the halves do not meet
 
   // The round to draw now: of every pixel of the list drawing(half), count() samples from number first(half) on, added to
