@@ -29,6 +29,24 @@ std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Wind
   return counts;
 }
 
+PixelMean pixel_mean(const PixelSums& sums, uint32_t samples) {
+  const double scale = 1.0 / samples;
+  return {{static_cast<float>(sums.r * scale), static_cast<float>(sums.g * scale), static_cast<float>(sums.b * scale)},
+          static_cast<float>(luminance_variance(sums, samples) * scale)};
+}
+
+MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window) {
+  MeanPicture picture{window.width, window.height, {}};
+  picture.pixels.reserve(size_t{window.width} * window.height);
+  for (uint32_t y = 0; y < window.height; ++y) {
+    for (uint32_t x = 0; x < window.width; ++x) {
+      const size_t i = size_t{window.y + y} * width + window.x + x;
+      picture.pixels.push_back(pixel_mean(film.sums[i], film.samples[i]));
+    }
+  }
+  return picture;
+}
+
 double mean_luminance(const PixelSums& sums, uint32_t samples) { return luminance(sums.r, sums.g, sums.b) / samples; }
 
 double luminance_variance(const PixelSums& sums, uint32_t samples) {

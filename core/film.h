@@ -1,6 +1,7 @@
 // The film: every pixel's sums over its samples, and what can be said of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -30,6 +31,20 @@ struct Film {
 // The mean of each pixel of the window, and how many samples it is of. width: of the whole picture.
 Image develop(const Film& film, uint32_t width, const Window& window);
 std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Window& window);
+
+// The mean of a pixel's samples, and the variance of the mean's luminance, were they independent.
+struct PixelMean {
+  std::array<float, 3> rgb{};
+  float variance = 0;
+};
+
+struct MeanPicture {
+  uint32_t width = 0, height = 0;
+  std::vector<PixelMean> pixels;
+};
+
+PixelMean pixel_mean(const PixelSums& sums, uint32_t samples);
+MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window);
 
 // Of a pixel's luminance: the mean of its samples, and their variance sigma^2 (unbiased; 0 for one sample). samples > 0.
 double mean_luminance(const PixelSums& sums, uint32_t samples);

@@ -86,6 +86,11 @@ bool NoiseFilm::converged_around(const Half& half, uint32_t block) const {
   return true;
 }
 
+void NoiseFilm::shorten(uint32_t count) {
+  count_ = std::min(count_, count);
+  if (count == 0) max_drawn_ = drawn_;
+}
+
 void NoiseFilm::end_round() {
   drawn_ += count_;
   const bool last = drawn_ >= max_drawn_;
@@ -111,8 +116,8 @@ void NoiseFilm::end_round() {
       if (!half.ended[b] && (last || converged_around(halves_[1 - h], b))) {
         half.ended[b] = 1;
         for_each_pixel(b, [&](uint32_t x, uint32_t y) {
-          const size_t i = size_t{y} * width_ + x;
-          half.estimate[i] = {half.sums[i].r / drawn_, half.sums[i].g / drawn_, half.sums[i].b / drawn_};
+          const PixelSums& sums = half.sums[size_t{y} * width_ + x];
+          half.estimate[size_t{y} * width_ + x] = {sums.r / drawn_, sums.g / drawn_, sums.b / drawn_};
         });
       }
       draws |= half.draws(b);
@@ -155,6 +160,39 @@ double NoiseFilm::converged() const {
     }
   }
   return static_cast<double>(converged) / static_cast<double>(uint64_t{window_.width} * window_.height);
+}
+
+std::array<double, 3> NoiseFilm::mean(const Half& half, uint32_t x, uint32_t y) const {
+  const uint32_t block = block_of(x, y);
+  const size_t i = size_t{y} * width_ + x;
+  if (half.ended[block]) return half.estimate[i];
+  const double n = half.samples[block];
+  return {half.sums[i].r / n, half.sums[i].g / n, half.sums[i].b / n};
+}
+
+ErrorEstimate NoiseFilm::estimate_error(uint32_t threads) const {
+  MeanPicture picture{window_.width, window_.height, {}};
+  std::vector<std::array<float, 3>> squares;  // of half the halves' difference: the mean's error, squared
+  for (uint32_t y = window_.y; y < window_.y + window_.height; ++y) {
+    for (uint32_t x = window_.x; x < window_.x + window_.width; ++x) {
+      const std::array<double, 3> a = mean(halves_[0], x, y), b = mean(halves_[1], x, y);
+      PixelMean pixel;
+      std::array<float, 3> square{};
+      for (size_t c = 0; c < 3; ++c) {
+        pixel.rgb[c] = static_cast<float>((a[c] + b[c]) / kHalves);
+        square[c] = static_cast<float>((a[c] - b[c]) * (a[c] - b[c]) / (kHalves * kHalves));
+      }
+      for (const Half& half : halves_) {
+        const uint32_t n = half.samples[block_of(x, y)];
+        const double variance = luminance_variance(half.sums[size_t{y} * width_ + x], n) / n;
+        pixel.variance += static_cast<float>(variance / (kHalves * kHalves));
+      }
+      picture.pixels.push_back(pixel);
+      squares.push_back(square);
+    }
+  }
+  const auto square_of = [&](size_t i) { return std::array<double, 3>{squares[i][0], squares[i][1], squares[i][2]}; };
+  return lanewise::estimate_error(picture, square_of, threads);
 }
 
 }  // namespace lanewise

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/error_estimate.h"
 #include "core/image.h"
 #include "core/settings.h"
 #include "kernels/kernels.h"
@@ -41,6 +42,8 @@ class NoiseFilm {
   uint32_t first(uint32_t half) const { return kHalfStart[half] + drawn_; }
   std::vector<uint32_t> drawing(uint32_t half) const;
   PixelSums* sums(uint32_t half) { return halves_[half].sums.data(); }
+  // Before the round is drawn: to fewer samples. To 0: end_round() then ends all estimates as they are.
+  void shorten(uint32_t count);
   void end_round();
 
   // Samples drawn in all, and how many it will be, as far as can be said from the noise that is left.
@@ -52,6 +55,9 @@ class NoiseFilm {
   Image develop() const;
   std::vector<uint32_t> sample_counts() const;
   double converged() const;
+
+  // Of the window, as it would be if the film ended now. After the first round.
+  ErrorEstimate estimate_error(uint32_t threads) const;
 
  private:
   struct Half {
@@ -71,6 +77,8 @@ class NoiseFilm {
   template <class F>
   void for_each_pixel(uint32_t block, const F& f) const;
   uint32_t block_of(uint32_t x, uint32_t y) const;
+  // Mean RGB of the half's samples up to its estimate's end, or so far.
+  std::array<double, 3> mean(const Half& half, uint32_t x, uint32_t y) const;
 
   uint32_t width_, height_;
   Window window_;

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/error_estimate.h"
 #include "core/image.h"
 #include "core/plan.h"
 #include "core/profiler.h"
@@ -23,7 +25,7 @@ struct StageStats {
 };
 
 struct RenderStats {
-  uint64_t samples = 0;
+  uint64_t samples = 0;  // also those of probes
   uint64_t camera_rays = 0;
   uint64_t bounce_rays = 0;
   uint64_t shadow_rays = 0;
@@ -32,14 +34,16 @@ struct RenderStats {
   std::vector<StageStats> stages;
   double samples_per_pixel = 0;  // mean over the picture; samples counts also those around a crop that --noise looks at
   double converged = 1;          // share of the pixels that reached what -a or --noise asks for
-  double seconds = 0;            // wall clock of rendering alone
-  uint32_t threads = 0;          // that did some of the work
+  std::optional<ErrorEstimate> error;  // none with -a, of one sample a pixel, or if not asked for
+  double seconds = 0;                  // wall clock of rendering alone
+  uint32_t threads = 0;                // that did some of the work
 };
 
 struct Progress {
-  double fraction = 0;  // of the work that is known of, in [0, 1]
+  double fraction = 0;  // of the work that is known of, or of the time that --time gives it, in [0, 1]
   uint64_t rays = 0;
   double seconds = 0;
+  double mrse = -1;  // estimated error of the picture so far; -1: not known yet
 };
 
 struct RenderResult {

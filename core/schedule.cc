@@ -1,23 +1,23 @@
 #include "core/schedule.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/film.h"
 #include "core/noise_film.h"
+#include "core/rounds.h"
 #include "core/tile.h"
 #include "core/workers.h"
 
 namespace lanewise {
 namespace {
 
-// -s and -a. Of a tile's pixels, batch after batch goes to those that have not converged.
-Exposure expose_tiles(const Settings& settings, uint32_t threads, const Draw& draw,
-                      const std::function<void(const Progress&)>& progress) {
+// -a. Of a tile's pixels, batch after batch goes to those that have not converged.
+Exposure expose_adaptively(const Settings& settings, uint32_t threads, const Draw& draw,
+                           const std::function<void(const Progress&)>& progress) {
   const Window window = settings.window();
-  std::vector<Tile> tiles = make_tiles(settings);
+  std::vector<Tile> tiles = make_tiles(settings, settings.adaptive_batch);
   Film film(size_t{settings.width} * settings.height);
-  const bool adaptive = settings.adaptive_batch > 0;
-  const uint32_t batch = adaptive ? settings.adaptive_batch : settings.spp;
   run_workers(
       threads, tiles.size(),
       [&](size_t item, uint32_t worker) {
@@ -25,11 +25,10 @@ Exposure expose_tiles(const Settings& settings, uint32_t threads, const Draw& dr
         std::vector<uint32_t>& pixels = tiles[item].pixels;  // that have not converged
         for (const uint32_t pixel : pixels) film.sums[pixel] = {};
         for (uint32_t done = 0; done < settings.spp && !pixels.empty();) {
-          const uint32_t count = std::min(batch, settings.spp - done);
+          const uint32_t count = std::min(settings.adaptive_batch, settings.spp - done);
           rays += draw(pixels, done, count, film.sums.data(), worker);
           done += count;
           for (const uint32_t pixel : pixels) film.samples[pixel] = done;
-          if (!adaptive) break;
           std::erase_if(pixels, [&](uint32_t pixel) {
             return has_converged(film.sums[pixel], done, settings.adaptive_tolerance);
           });
@@ -39,59 +38,84 @@ Exposure expose_tiles(const Settings& settings, uint32_t threads, const Draw& dr
       progress);
 
   size_t noisy = 0, all = size_t{window.width} * window.height;
-  if (adaptive) {
-    for (const Tile& tile : tiles) noisy += tile.pixels.size();
-  }
-  return {develop(film, settings.width, window), sample_counts(film, settings.width, window),
-          1 - static_cast<double>(noisy) / static_cast<double>(all)};
+  for (const Tile& tile : tiles) noisy += tile.pixels.size();
+  return {develop(film, settings.width, window),
+          sample_counts(film, settings.width, window),
+          1 - static_cast<double>(noisy) / static_cast<double>(all),
+          {}};
 }
 
-// --noise. A round's pixels are dealt out in portions of some waves.
+// --noise. A round's pixels are dealt out in portions of some waves. Where there is a time, rounds are shortened to it.
 Exposure expose_to_noise(const Settings& settings, uint32_t threads, const Draw& draw,
-                         const std::function<void(const Progress&)>& progress) {
+                         const std::function<void(const Progress&)>& progress, const Clock& clock) {
   struct Portion {
     uint32_t half;
     std::vector<uint32_t> pixels;
   };
   constexpr uint32_t kWaves = 4;  // enough that waves are full, few enough that threads end together
   NoiseFilm film(settings.width, settings.height, settings.window(), settings.noise, settings.spp);
-  Progress before;
+  const double start = clock();
+  std::optional<ErrorEstimate> error;
+  const auto estimate = [&] {
+    if (settings.estimate_error) error = film.estimate_error(threads);
+  };
+  double seconds_per_sample = 0;  // of all pixels that are still drawn
+  double drawn = 0;               // in the round before
+  uint64_t rays = 0;
   while (film.count() > 0) {
-    const uint32_t size = std::max(1u, kWaves * settings.wave / film.count());
+    const std::vector<uint32_t> drawing[] = {film.drawing(0), film.drawing(1)};
+    const auto pixels = static_cast<double>(drawing[0].size() + drawing[1].size());
+    if (settings.seconds > 0 && drawn > 0) {
+      const double left = settings.seconds - (clock() - start);
+      const double fits = std::max(0.0, left / (seconds_per_sample * pixels));
+      if (fits < film.count()) film.shorten(static_cast<uint32_t>(0.9 * fits));
+    }
+    const uint32_t count = film.count();
+    const size_t size = std::max(1u, kWaves * settings.wave / std::max(count, 1u));
     std::vector<Portion> portions;
-    double drawing = 0;
-    for (uint32_t half = 0; half < NoiseFilm::kHalves; ++half) {
-      const std::vector<uint32_t> pixels = film.drawing(half);
-      drawing += static_cast<double>(pixels.size()) * film.count();
-      for (auto begin = pixels.begin(); begin != pixels.end();) {
-        const auto end = begin + std::min<ptrdiff_t>(size, pixels.end() - begin);
-        portions.push_back({half, {begin, end}});
-        begin = end;
+    for (uint32_t half = 0; half < NoiseFilm::kHalves && count > 0; ++half) {
+      const std::vector<uint32_t>& all = drawing[half];
+      for (size_t begin = 0; begin < all.size(); begin += size) {
+        const auto first = all.begin() + static_cast<ptrdiff_t>(begin);
+        portions.push_back({half, {first, first + static_cast<ptrdiff_t>(std::min(size, all.size() - begin))}});
       }
     }
-    Progress now = before;
+    const double begin = clock();
+    const uint64_t rays_before = rays;
     run_workers(
         threads, portions.size(),
         [&](size_t item, uint32_t worker) {
           const Portion& portion = portions[item];
-          return draw(portion.pixels, film.first(portion.half), film.count(), film.sums(portion.half), worker);
+          return draw(portion.pixels, film.first(portion.half), count, film.sums(portion.half), worker);
         },
         [&](const Progress& round) {
-          now = {(film.drawn() + round.fraction * drawing) / film.expected(), before.rays + round.rays,
-                 before.seconds + round.seconds};
-          if (progress) progress(now);
+          rays = rays_before + round.rays;
+          const double seconds = clock() - start;
+          const double fraction = (film.drawn() + round.fraction * pixels * count) / film.expected();
+          if (progress) {
+            progress({std::max(fraction, settings.seconds > 0 ? seconds / settings.seconds : 0), rays, seconds,
+                      error ? error->mrse : -1});
+          }
         });
-    before = now;
+    drawn = pixels * count;
+    if (count > 0) seconds_per_sample = (clock() - begin) / drawn;
     film.end_round();
+    if (progress || film.count() == 0) estimate();
   }
-  return {film.develop(), film.sample_counts(), film.converged()};
+  return {film.develop(), film.sample_counts(), film.converged(), error};
 }
 
 }  // namespace
 
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 Exposure expose(const Settings& settings, uint32_t threads, const Draw& draw,
-                const std::function<void(const Progress&)>& progress) {
-  return (settings.noise > 0 ? expose_to_noise : expose_tiles)(settings, threads, draw, progress);
+                const std::function<void(const Progress&)>& progress, const Clock& clock) {
+  if (settings.noise > 0) return expose_to_noise(settings, threads, draw, progress, clock);
+  if (settings.adaptive_batch > 0) return expose_adaptively(settings, threads, draw, progress);
+  return expose_in_rounds(settings, threads, draw, progress, clock);
 }
 
 }  // namespace lanewise

@@ -1,9 +1,10 @@
-// Which pixels get how many samples: -s the same for all, -a batches until a pixel has converged, --noise what the noise
-// demands. Both renderers draw their samples through it, and differ only in how they draw.
+// Which pixels get how many samples: -s and --time the same for all, -a batches until a pixel has converged, --noise what the
+// noise demands. Both renderers draw their samples through it, and differ only in how they draw.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/image.h"
@@ -23,9 +24,14 @@ struct Exposure {
   Image image;
   std::vector<uint32_t> samples;  // drawn for each pixel of it
   double converged = 1;           // share of its pixels that reached what -a or --noise asks for
+  std::optional<ErrorEstimate> error;
 };
 
+// Seconds since some moment, to be called from any thread.
+using Clock = std::function<double()>;
+double steady_seconds();
+
 Exposure expose(const Settings& settings, uint32_t threads, const Draw& draw,
-                const std::function<void(const Progress&)>& progress);
+                const std::function<void(const Progress&)>& progress, const Clock& clock = steady_seconds);
 
 }  // namespace lanewise

@@ -22,7 +22,7 @@ struct Settings {
   uint32_t width = 480;
   uint32_t height = 360;
   Window crop;                 // -p: the part to render, within the picture; width 0: all of it
-  uint32_t spp = 16;           // camera samples per pixel, >= 1; the most of them with -a and --noise
+  uint32_t spp = 16;           // camera samples per pixel, >= 1; the most of them with -a, --noise and --time
   uint32_t light_samples = 1;  // per light at every vertex, >= 1
   uint32_t max_depth = 5;      // most scattering events on a path; 0: only light seen directly
   uint32_t threads = 0;        // 0: all the machine has
@@ -39,6 +39,8 @@ struct Settings {
   uint32_t adaptive_batch = 0;       // -a: samples between two decisions; 0: off
   double adaptive_tolerance = 0.05;  // stop a pixel when 1.96 sigma / sqrt(n) <= tolerance * mean
   double noise = 0;                  // --noise: relative standard error to stop a pixel at, by NoiseFilm's rule; 0: off
+  double seconds = 0;                // --time: of rendering; 0: as many as it takes
+  bool estimate_error = false;       // what `lanewise render` does unless told not to
 
   // The pixels that are rendered, and the result's size.
   Window window() const { return crop.width > 0 ? crop : Window{0, 0, width, height}; }

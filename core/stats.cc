@@ -43,6 +43,7 @@ RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles
   const double drawn = std::accumulate(result.samples.begin(), result.samples.end(), 0.0);
   result.stats.samples_per_pixel = drawn / static_cast<double>(result.samples.size());
   result.stats.converged = exposure.converged;
+  result.stats.error = exposure.error;
   result.stats.threads = threads;
   result.stats.seconds = elapsed.count();
   return result;

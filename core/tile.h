@@ -13,12 +13,12 @@ struct Tile {
   std::vector<uint32_t> pixels;  // y * width + x
 };
 
-// Cuts the window into squares of a side that gives a tile's samples a full wave, if the picture is large enough for that to
-// leave every thread work to the end.
-inline std::vector<Tile> make_tiles(const Settings& settings) {
+// Cuts the window into squares of a side that gives a tile's samples, so many a pixel, a full wave, if the picture is large
+// enough for that to leave every thread work to the end.
+inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples) {
   constexpr uint32_t kMinSide = 16, kMaxSide = 64;
   uint32_t side = kMinSide;
-  while (side < kMaxSide && uint64_t{side} * side * settings.spp < settings.wave) side *= 2;
+  while (side < kMaxSide && uint64_t{side} * side * samples < settings.wave) side *= 2;
   const Window window = settings.window();
   const uint32_t x_end = window.x + window.width, y_end = window.y + window.height;
   std::vector<Tile> tiles;

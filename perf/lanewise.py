@@ -16,11 +16,14 @@ SHIPPED = [ROOT / 'scenes' / f'{name}.dae' for name in ('cornell_spheres', 'corn
 COURSE = ROOT.parent / 'shared' / 'scenes'  # the course's scenes, which do not come with the project
 
 
-def render(scene, *flags, camera=None):
-    """The picture (height, width, 3), row 0 at the top, and the run's statistics. camera: a collada.Camera."""
+def render(scene, *flags, camera=None, estimate=False):
+    """The picture (height, width, 3), row 0 at the top, and the run's statistics. camera: a collada.Camera. estimate: the
+    error too, which takes samples of its own."""
     with tempfile.TemporaryDirectory() as folder:
         picture, stats, view = (pathlib.Path(folder) / name for name in ('picture.pfm', 'stats.json', 'camera.json'))
         command = [PROGRAM, 'render', scene, '-q', '-f', picture, '--stats', stats, *flags]
+        if not estimate:
+            command.append('--no-estimate')
         if camera:
             view.write_text(json.dumps({
                 'eye': camera.eye.tolist(), 'target': camera.target.tolist(),

@@ -83,7 +83,8 @@ def count(scene, flags, folder):
     """{function: instructions of its own} within waves."""
     out = folder / 'callgrind.out'
     command = ['valgrind', '--tool=callgrind', f'--callgrind-out-file={out}', '--compress-pos=no', '--compress-strings=no',
-               f'--toggle-collect={WAVES}', lanewise.PROGRAM, 'render', scene, '-q', '-f', folder / 'out.pfm', *FLAGS, *flags]
+               f'--toggle-collect={WAVES}', lanewise.PROGRAM, 'render', scene, '-q', '--no-estimate', '-f', folder / 'out.pfm',
+               *FLAGS, *flags]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise SystemExit(f'{" ".join(map(str, command))}: {done.stderr}')

@@ -325,7 +325,7 @@ TEST_CASE("command line: the pixels depend on neither threads nor wave, but on t
 TEST_CASE("command line: stats.json adds up") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
-  const Arguments flags = {box(), "-t", "2", "--seed", "12345678901234567890", "--stats", "stats.json"};
+  const Arguments flags = {box(), "-t", "2", "--no-estimate", "--seed", "12345678901234567890", "--stats", "stats.json"};
   const ProcessResult result = render_small(folder, flags);
   CAPTURE(result.err);
   REQUIRE(result.exit_code == 0);
@@ -368,6 +368,24 @@ TEST_CASE("command line: stats.json adds up") {
     CHECK(stage["lanes_live"].get<double>() >= 0);
     CHECK(stage["lanes_live"].get<double>() <= 1);
   }
+}
+
+TEST_CASE("command line: the estimated error is in the summary and in stats.json, and the picture the same without it") {
+  if (nothing_to_test()) return;
+  const TemporaryFolder folder;
+  const Arguments flags = {"render", box(), "-r", "48", "36", "-s", "16", "-f", "a.pfm", "--stats", "a.json"};
+  const ProcessResult with = lanewise(folder, flags);
+  REQUIRE(with.exit_code == 0);
+  CHECK(with.out.find("estimated error: MRSE 0.") != std::string::npos);
+  const nlohmann::json error = nlohmann::json::parse(test::read_text(folder.file("a.json")))["estimated_mrse"];
+  CHECK(error["value"].get<double>() > 0.01);
+  CHECK(error["low"].get<double>() < error["value"].get<double>());
+  CHECK(error["high"].get<double>() > error["value"].get<double>());
+  const std::vector<float> picture = read_image(folder.file("a.pfm")).rgb;
+  const ProcessResult without = lanewise(folder, flags + Arguments{"--no-estimate"});
+  CHECK(without.out.find("estimated") == std::string::npos);
+  CHECK(!nlohmann::json::parse(test::read_text(folder.file("a.json"))).contains("estimated_mrse"));
+  CHECK(picture == read_image(folder.file("a.pfm")).rgb);
 }
 
 TEST_CASE("command line: the scalar references make the same picture but for rounding") {

@@ -17,7 +17,14 @@ void ProgressLine::show(const std::string& text) {
   shown_ = true;
 }
 
-void ProgressLine::show(const Progress& p) {
+void ProgressLine::clear() {
+  if (!shown_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+std::string progress_text(const Progress& p) {
   const double fraction = std::clamp(p.fraction, 0.0, 1.0);
   std::string text = "rendering  ";
   char part[64];
@@ -30,16 +37,13 @@ void ProgressLine::show(const Progress& p) {
     std::snprintf(part, sizeof part, "  %.1f Mrays/s", 1e-6 * static_cast<double>(p.rays) / p.seconds);
     text += part;
   }
+  if (p.mrse >= 0) {
+    std::snprintf(part, sizeof part, "  error %.3g %%", 100 * std::sqrt(p.mrse));
+    text += part;
+  }
   // The first moments say little about the whole.
   if (fraction > 0.001 && p.seconds > 0.5) text += "  " + clock_time(p.seconds * (1 - fraction) / fraction) + " left";
-  show(text);
-}
-
-void ProgressLine::clear() {
-  if (!shown_) return;
-  std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
-  shown_ = false;
+  return text;
 }
 
 std::string clock_time(double seconds) {

@@ -7,6 +7,9 @@
 
 namespace lanewise {
 
+// "rendering", percentage, bar, rays per second, estimated relative error (root of MRSE) and time left, as far as known.
+std::string progress_text(const Progress& progress);
+
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -15,7 +18,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(const std::string& text);
-  void show(const Progress& progress);  // percentage, rays per second, time left
+  void show(const Progress& progress) { show(progress_text(progress)); }
   void clear();
 
  private:

@@ -153,6 +153,10 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
                  "Picture of the samples that each pixel took: colours in a .png, their number in the others")
       ->type_name("FILE");
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
+  o.settings.estimate_error = true;
+  app.add_flag_function(
+      "--no-estimate", [&o](int64_t) { o.settings.estimate_error = false; },
+      "No estimate of the error; saves the second samples of one pixel in 32 that it takes");
   app.add_flag("-q,--quiet", o.quiet, "No progress, no summary");
 }
 

@@ -68,6 +68,7 @@ std::string stats_json(const RenderReport& r) {
       {"converged", s.converged},
       {"paths_by_length", s.paths_by_length},
   };
+  if (s.error) json["estimated_mrse"] = {{"value", s.error->mrse}, {"low", s.error->low}, {"high", s.error->high}};
   json["plan"] = decisions_json(r.plan);
   json["stages"] = nlohmann::ordered_json::array();
   for (const StageStats& stage : s.stages) {
@@ -99,6 +100,10 @@ std::string summary(const RenderReport& r) {
                                 ? "standard error of " + short_number(100 * settings.noise) + " %"
                                 : "tolerance of " + short_number(100 * settings.adaptive_tolerance) + " %";
     text += aim + " reached in " + short_number(100 * s.converged) + " % of the pixels\n";
+  }
+  if (s.error) {
+    text += "estimated error: MRSE " + short_number(s.error->mrse) + " (95%: " + short_number(s.error->low) + " to " +
+            short_number(s.error->high) + ")\n";
   }
   text += "load " + short_seconds(r.seconds.load) + ", plan " + short_seconds(r.seconds.plan) + ", render " +
           short_seconds(r.seconds.render) + ", write " + short_seconds(r.seconds.write) + "\n";

@@ -1,0 +1,129 @@
+#include "core/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/probes.h"
+#include "core/workers.h"
+#include "kernels/kernels.h"
+
+namespace lanewise {
+namespace {
+
+constexpr double kLeastRadiance = 0.01;  // MRSE's
+
+// Relative standard error that likely_value() leaves in the estimate: measured on the course's scenes, see
+// perf/results/error_estimate.md.
+constexpr double kLikelyValueError = 0.05;
+
+double luminance_of(const std::array<double, 3>& rgb) { return luminance(rgb[0], rgb[1], rgb[2]); }
+
+// The mean over channels of square / (truth + 0.01)^2.
+double relative(const std::array<double, 3>& square, const std::array<double, 3>& truth) {
+  double sum = 0;
+  for (size_t c = 0; c < 3; ++c) sum += square[c] / ((truth[c] + kLeastRadiance) * (truth[c] + kLeastRadiance));
+  return sum / 3;
+}
+
+struct Sums {
+  double terms = 0, squares = 0;
+
+  void add(double term) { terms += term, squares += term * term; }
+  // Relative variance of the sum of that many independent terms.
+  double variance(double n) const {
+    return terms > 0 && n > 1 ? std::max(0.0, squares / (terms * terms) * n - 1) / (n - 1) : 0;
+  }
+};
+
+// Over the whole picture, with the same bits for any number of threads.
+Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
+  std::vector<Sums> rows(picture.height);
+  const auto sum_row = [&](size_t row, uint32_t) {
+    const auto y = static_cast<uint32_t>(row);
+    for (uint32_t x = 0; x < picture.width; ++x) {
+      const size_t i = row * picture.width + x;
+      rows[row].add(relative(squares(i), likely_value(picture, x, y, picture.pixels[i])));
+    }
+    return uint64_t{0};
+  };
+  run_workers(threads, rows.size(), sum_row, nullptr);
+  Sums all;
+  for (const Sums& row : rows) all.terms += row.terms, all.squares += row.squares;
+  return all;
+}
+
+// The factor is that of a ratio, of relative variance `variance`.
+ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double factor, double variance) {
+  const double n = static_cast<double>(picture.pixels.size());
+  // Both the picture's own error and what is known of it vary.
+  variance += 2 * all.variance(n) + kLikelyValueError * kLikelyValueError;
+  const double value = factor * all.terms / n, spread = std::exp(1.96 * std::sqrt(variance));
+  return {value, value / spread, value * spread};
+}
+
+}  // namespace
+
+std::array<double, 3> likely_value(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
+  std::array<double, 3> around{}, own{};
+  for (size_t c = 0; c < 3; ++c) own[c] = centre.rgb[c];
+  double variance = centre.variance, neighbours = 0;
+  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
+    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
+      if (i == x && j == y) continue;
+      const PixelMean& pixel = picture.pixels[size_t{j} * picture.width + i];
+      for (size_t c = 0; c < 3; ++c) around[c] += pixel.rgb[c];
+      variance += pixel.variance;
+      neighbours += 1;
+    }
+  }
+  if (neighbours == 0) return own;
+  for (double& value : around) value /= neighbours;
+  // Neither may a pixel that has met no bright path yet pass for calm beside noisy ones.
+  variance = std::max<double>(centre.variance, variance / (neighbours + 1) / 2);
+  const double difference = luminance_of(own) - luminance_of(around);
+  const double weight = variance < difference * difference ? 1 - variance / (difference * difference) : 0;
+  for (size_t c = 0; c < 3; ++c) around[c] += weight * (own[c] - around[c]);
+  return around;
+}
+
+ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
+  return with_interval(picture, sum_relative(picture, squares, threads), 1, 0);
+}
+
+ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, uint32_t threads) {
+  const auto variances = [&](size_t i) {
+    const double v = picture.pixels[i].variance;
+    return std::array<double, 3>{v, v, v};
+  };
+  const Sums all = sum_relative(picture, variances, threads);
+
+  // The ratio of what squared differences say to what variances say (Cochran, Sampling Techniques, 1977, ch. 6): bright paths
+  // that chance has dealt to the probes are in both.
+  std::vector<std::array<double, 2>> terms;  // of each probe: by difference, by variance
+  double by_difference = 0, by_variance = 0;
+  for (size_t k = 0; k < probes.pixels().size(); ++k) {
+    const size_t i = probes.place(k);
+    const PixelMean &first = picture.pixels[i], second = probes.second(k);
+    const double v = double{first.variance} + second.variance;
+    std::array<double, 3> difference2{};
+    for (size_t c = 0; c < 3; ++c) difference2[c] = std::pow(double{first.rgb[c]} - second.rgb[c], 2);
+    std::array<double, 2> term{};
+    for (const PixelMean& one : {first, second}) {
+      const std::array<double, 3> truth = likely_value(picture, static_cast<uint32_t>(i % picture.width),
+                                                       static_cast<uint32_t>(i / picture.width), one);
+      term[0] += relative(difference2, truth);
+      term[1] += relative({v, v, v}, truth);
+    }
+    terms.push_back(term);
+    by_difference += term[0];
+    by_variance += term[1];
+  }
+  if (by_variance == 0 || by_difference == 0) return with_interval(picture, all, 1, 0);
+  const double n = static_cast<double>(terms.size()), factor = by_difference / by_variance;
+  double residues = 0;
+  for (const auto& [difference, variance] : terms) residues += std::pow(difference - factor * variance, 2);
+  return with_interval(picture, all, factor, n / std::max(n - 1, 1.0) * residues / (by_difference * by_difference));
+}
+
+}  // namespace lanewise

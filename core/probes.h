@@ -1,0 +1,47 @@
+// Probes: pixels that are drawn a second time, with random numbers independent of the first. Half the squared difference of
+// two such estimates is the expected squared error of one, whatever samples of one estimate have to do with each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/film.h"
+#include "core/noise_film.h"
+#include "core/settings.h"
+
+namespace lanewise {
+
+class Probes {
+ public:
+  static constexpr uint32_t kMostSpacing = 32;        // one pixel in so many is a probe,
+  static constexpr uint32_t kWanted = 256;            // or more where a picture would have fewer probes than this
+  static constexpr uint32_t kMostSamples = 1u << 30;  // of a pixel, so that first and second ones do not meet
+
+  // No probes if `on` is false.
+  Probes(const Settings& settings, bool on);
+
+  // y * width + x of the whole picture: a lattice over the window, in rising order.
+  const std::vector<uint32_t>& pixels() const { return pixels_; }
+
+  // Samples behind all second estimates, and the number of the next one.
+  uint32_t samples() const { return samples_; }
+  uint32_t next_sample() const { return NoiseFilm::kHalfStart[1] + samples_; }
+
+  // Puts the second sums of probes begin .. end - 1 in the place of the film's, to be added to, and the film's in theirs; once
+  // more puts all back.
+  void exchange(Film& film, size_t begin, size_t end);
+  void drew(uint32_t count) { samples_ += count; }
+
+  // Of a probe, when all is put back: where it is in the window's rows, and its second estimate.
+  size_t place(size_t probe) const;
+  PixelMean second(size_t probe) const { return pixel_mean(sums_[probe], samples_); }
+
+ private:
+  uint32_t width_;
+  Window window_;
+  std::vector<uint32_t> pixels_;
+  std::vector<PixelSums> sums_;
+  uint32_t samples_ = 0;
+};
+
+}  // namespace lanewise

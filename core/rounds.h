@@ -1,0 +1,16 @@
+// -s and --time: every pixel gets the same number of samples, in rounds over the whole picture.
+#pragma once
+
+#include "core/schedule.h"
+
+namespace lanewise {
+
+// Where time is given: how many samples of each pixel the next round draws, of `most` in all. done: so far, of each pixel;
+// fits: how many more there is time for, at the rate of the last round. Doubles, as sequences of low discrepancy have it, and
+// leaves a tenth of the time to set the rate right by; the last, single sample is for the clock to cut.
+uint32_t timed_round(uint32_t done, uint32_t most, double fits);
+
+Exposure expose_in_rounds(const Settings& settings, uint32_t threads, const Draw& draw,
+                          const std::function<void(const Progress&)>& progress, const Clock& clock);
+
+}  // namespace lanewise

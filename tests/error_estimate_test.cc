@@ -1,0 +1,137 @@
+#include "core/error_estimate.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/image_compare.h"
+#include "core/noise_film.h"
+#include "core/probes.h"
+#include "tests/made_up_draw.h"
+
+namespace lanewise {
+namespace {
+
+MeanPicture flat(uint32_t width, uint32_t height, float value, float variance) {
+  return {width, height, std::vector<PixelMean>(size_t{width} * height, {{value, value, value}, variance})};
+}
+
+// MRSE of the exposure against the draw's expectation.
+double measured(const Exposure& exposure, const test::MadeUpDraw& draw) {
+  Image truth = exposure.image;
+  for (uint32_t y = 0; y < truth.height; ++y) {
+    for (uint32_t x = 0; x < truth.width; ++x) {
+      for (size_t c = 0; c < 3; ++c) truth.pixel(x, y)[c] = static_cast<float>(draw.expectation(y * truth.width + x));
+    }
+  }
+  return compare_images(exposure.image, truth).mrse;
+}
+
+Settings picture(uint32_t spp) {
+  Settings settings;
+  settings.width = 96, settings.height = 80, settings.spp = spp, settings.estimate_error = true;
+  return settings;
+}
+
+}  // namespace
+
+TEST_CASE("error estimate: a pixel's likely value is its own where it is calm, its neighbours' where it is noisy") {
+  MeanPicture scene = flat(5, 5, 1, 1e-6f);
+  scene.pixels[12] = {{3, 3, 3}, 1e-6f};
+  CHECK(likely_value(scene, 2, 2, scene.pixels[12])[0] == doctest::Approx(3).epsilon(1e-4));  // an edge
+  scene.pixels[12].variance = 4;                                                              // a firefly
+  CHECK(likely_value(scene, 2, 2, scene.pixels[12])[1] == doctest::Approx(1));
+  scene.pixels[12].variance = 1;
+  CHECK(likely_value(scene, 2, 2, scene.pixels[12])[2] == doctest::Approx(1 + 2 * 0.75));
+  CHECK(likely_value(scene, 0, 0, {{5, 5, 5}, 1e-6f})[0] == doctest::Approx(5).epsilon(1e-4));
+  const MeanPicture one = flat(1, 1, 7, 100);
+  CHECK(likely_value(one, 0, 0, one.pixels[0])[0] == 7);
+}
+
+TEST_CASE("error estimate: a calm pixel beside noisy ones is no better known than they") {
+  MeanPicture scene = flat(3, 3, 1, 8);
+  scene.pixels[4] = {{0, 0, 0}, 0};  // has met no bright path yet
+  CHECK(likely_value(scene, 1, 1, scene.pixels[4])[0] == doctest::Approx(1));
+}
+
+TEST_CASE("error estimate: exact squares give their relative mean, and a calm picture no error") {
+  const MeanPicture scene = flat(20, 10, 0.49f, 0);
+  const auto square = [](size_t) { return std::array<double, 3>{0.01, 0.02, 0.03}; };
+  const ErrorEstimate error = estimate_error(scene, square, 3);
+  CHECK(error.mrse == doctest::Approx(0.02 / 0.25).epsilon(1e-5));
+  CHECK(error.low < error.mrse);
+  CHECK(error.mrse < error.high);
+  CHECK(error.high < 1.2 * error.mrse);
+  CHECK(estimate_error(
+            scene, [](size_t) { return std::array<double, 3>{}; }, 1)
+            .high == 0);
+}
+
+TEST_CASE("error estimate: what independent and low-discrepancy samples are off by, within a fifth") {
+  for (const bool stratified : {false, true}) {
+    for (const uint32_t spp : {16u, 64u, 80u}) {
+      CAPTURE(stratified);
+      CAPTURE(spp);
+      const test::MadeUpDraw draw{.stratified = stratified};
+      const Exposure got = expose(picture(spp), 2, draw, nullptr);
+      REQUIRE(got.error);
+      const double truth = measured(got, draw);
+      CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.2));
+      CHECK(got.error->low < truth);
+      CHECK(truth < got.error->high);
+    }
+  }
+}
+
+TEST_CASE("error estimate: nothing is said of one sample, of -a, or where it is not asked for") {
+  const test::MadeUpDraw draw;
+  CHECK(!expose(picture(1), 1, draw, nullptr).error);
+  Settings settings = picture(64);
+  settings.estimate_error = false;
+  CHECK(!expose(settings, 1, draw, nullptr).error);
+  settings.estimate_error = true;
+  settings.adaptive_batch = 16;
+  CHECK(!expose(settings, 1, draw, nullptr).error);
+}
+
+TEST_CASE("error estimate: the picture has the same bits with it, also of rounds, and the estimate with any threads") {
+  const test::MadeUpDraw draw;
+  Settings settings = picture(200);
+  const Exposure with = expose(settings, 2, draw, [](const Progress&) {});
+  const Exposure again = expose(settings, 1, draw, nullptr);
+  settings.estimate_error = false;
+  CHECK(with.image.rgb == expose(settings, 1, draw, nullptr).image.rgb);
+  CHECK(with.error->mrse == again.error->mrse);
+  CHECK(with.error->low == again.error->low);
+}
+
+TEST_CASE("error estimate: --noise knows it from its halves") {
+  const test::MadeUpDraw draw;
+  Settings settings = picture(4096);
+  settings.noise = 0.1;
+  const Exposure got = expose(settings, 1, draw, nullptr);
+  REQUIRE(got.error);
+  CHECK(got.error->mrse == doctest::Approx(measured(got, draw)).epsilon(0.15));
+  CHECK(got.error->mrse < 0.01);
+}
+
+TEST_CASE("probes: one pixel in 32, fewer apart in small pictures, all within the window") {
+  Settings settings = picture(16);
+  settings.width = 640, settings.height = 480;
+  CHECK(Probes(settings, true).pixels().size() == 640 * 480 / 32);
+  settings.crop = {100, 50, 33, 21};
+  const Probes probes(settings, true);
+  CHECK(probes.pixels().size() >= Probes::kWanted);
+  for (size_t i = 0; i < probes.pixels().size(); ++i) {
+    const uint32_t x = probes.pixels()[i] % 640, y = probes.pixels()[i] / 640;
+    const bool inside = x >= 100 && x < 133 && y >= 50 && y < 71;
+    CHECK(inside);
+    CHECK(probes.place(i) == size_t{y - 50} * 33 + x - 100);
+  }
+  settings.crop = {5, 5, 1, 1};
+  CHECK(Probes(settings, true).pixels().size() == 1);
+  CHECK(Probes(settings, false).pixels().empty());
+}
+
+}  // namespace lanewise
