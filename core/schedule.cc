@@ -91,7 +91,8 @@ Exposure expose_to_noise(const Settings& settings, uint32_t threads, const Draw&
         [&](const Progress& round) {
           rays = rays_before + round.rays;
           const double seconds = clock() - start;
-          const double fraction = (film.drawn() + round.fraction * pixels * count) / film.expected();
+          // The first round alone tells how many there will be.
+          const double fraction = drawn > 0 ? (film.drawn() + round.fraction * pixels * count) / film.expected() : 0;
           if (progress) {
             progress({std::max(fraction, settings.seconds > 0 ? seconds / settings.seconds : 0), rays, seconds,
                       error ? error->mrse : -1});

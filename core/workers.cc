@@ -42,7 +42,7 @@ void run_workers(uint32_t threads, size_t items, const std::function<uint64_t(si
   const auto report = [&] {
     if (!progress) return;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    progress({static_cast<double>(done) / static_cast<double>(items), rays, elapsed.count()});
+    progress({items > 0 ? static_cast<double>(done) / static_cast<double>(items) : 1, rays, elapsed.count()});
   };
 
   std::vector<std::jthread> pool;

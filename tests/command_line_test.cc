@@ -142,6 +142,15 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
       {{"--noise", "nan"}, "--noise"},
       {{"--noise", "0.1", "-a", "64", "0.1"}, "--noise contradicts --adaptive"},
       {{"--noise", "0.1", "-s", "31"}, "--noise: needs --spp (-s) of at least 32"},
+      {{"--time", ""}, "--time"},
+      {{"--time", "0s"}, "--time"},
+      {{"--time", "-1"}, "--time"},
+      {{"--time", "nan"}, "--time"},
+      {{"--time", "1e9"}, "--time"},
+      {{"--time", "1s1m"}, "--time"},
+      {{"--time", "10s5"}, "--time"},
+      {{"--time", "ten"}, "--time: 'ten' is not a time"},
+      {{"--time", "10s", "-a", "64", "0.1"}, "--time contradicts --adaptive"},
       {{"--rate", "rate.txt"}, "rate.txt"},
       {{"--rate", "old.png"}, "--rate: would overwrite old.png"},
       {{"--rate", "rate.png", "--stats", "rate.png"}, "--stats: would overwrite rate.png"},
@@ -325,7 +334,8 @@ TEST_CASE("command line: the pixels depend on neither threads nor wave, but on t
 TEST_CASE("command line: stats.json adds up") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
-  const Arguments flags = {box(), "-t", "2", "--no-estimate", "--seed", "12345678901234567890", "--stats", "stats.json"};
+  const Arguments flags = {box(),     "-t",        "2", "--no-estimate", "--seed", "12345678901234567890",
+                           "--stats", "stats.json"};
   const ProcessResult result = render_small(folder, flags);
   CAPTURE(result.err);
   REQUIRE(result.exit_code == 0);
@@ -370,7 +380,8 @@ TEST_CASE("command line: stats.json adds up") {
   }
 }
 
-TEST_CASE("command line: the estimated error is in the summary and in stats.json, and the picture the same without it") {
+TEST_CASE(
+    "command line: the estimated error is in the summary and in stats.json, and the picture the same without it") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
   const Arguments flags = {"render", box(), "-r", "48", "36", "-s", "16", "-f", "a.pfm", "--stats", "a.json"};
@@ -386,6 +397,24 @@ TEST_CASE("command line: the estimated error is in the summary and in stats.json
   CHECK(without.out.find("estimated") == std::string::npos);
   CHECK(!nlohmann::json::parse(test::read_text(folder.file("a.json"))).contains("estimated_mrse"));
   CHECK(picture == read_image(folder.file("a.pfm")).rgb);
+}
+
+TEST_CASE("command line: --time ends by itself, and with -s where that comes first") {
+  if (nothing_to_test()) return;
+  const TemporaryFolder folder;
+  const std::vector<float> four = picture_of(folder, {box()});  // -s 4
+  for (const char* time : {"1000000", "1h30m", "90.5m", "9h1m1s1ms"}) {
+    CAPTURE(time);
+    CHECK(picture_of(folder, {box(), "--time", time}) == four);
+  }
+  picture_of(folder, {box(), "--time", "1ms", "-s", "1000000", "--stats", "stats.json"});
+  const nlohmann::json stats = nlohmann::json::parse(test::read_text(folder.file("stats.json")));
+  CHECK(stats["samples_per_pixel"].get<double>() >= 1);
+  CHECK(stats["samples_per_pixel"].get<double>() < 100000);
+  const ProcessResult result =
+      lanewise(folder, {"render", box(), "-r", "24", "18", "--time", "20ms", "--noise", "1e-6", "-f", "a.png"});
+  CHECK(result.out.find(" samples per pixel, depth 5") != std::string::npos);
+  CHECK(result.out.find("reached in 0 % of the pixels") != std::string::npos);
 }
 
 TEST_CASE("command line: the scalar references make the same picture but for rounding") {

@@ -127,7 +127,11 @@ TEST_CASE("rounds: of --time and --noise the first to come ends the picture") {
   settings.spp = 65536;
   settings.estimate_error = true;
   MadeUpTime time(10 / 300.0 / (160 * 128));
-  const Exposure got = expose(settings, 1, time.draw(), nullptr, time.clock());
+  const auto see = [&](const Progress& p) {
+    CHECK(p.fraction >= 0);
+    CHECK(p.fraction < 1.03);
+  };
+  const Exposure got = expose(settings, 1, time.draw(), see, time.clock());
   CHECK(time.now - 1e6 > 9.8);
   CHECK(time.now - 1e6 < 10.2);
   CHECK(got.converged == 0);

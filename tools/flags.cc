@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace lanewise {
@@ -44,6 +45,33 @@ CLI::Validator real_number(double lo, double hi) {
       complaint << "from " << lo << " to " << hi;
     }
     return complaint.str();
+  });
+}
+
+std::optional<double> parse_duration(const std::string& text) {
+  double seconds = 0, least = std::numeric_limits<double>::infinity();
+  for (const char *at = text.data(), *const end = at + text.size(); at != end || text.empty();) {
+    double value = 0;
+    const auto [unit, error] = std::from_chars(at, end, value, std::chars_format::fixed);
+    if (error != std::errc() || value < 0) return {};
+    at = std::find_if(unit, end, [](char c) { return c < 'a' || c > 'z'; });
+    const std::string_view name(unit, static_cast<size_t>(at - unit));
+    const double scale = name == "h" ? 3600 : name == "m" ? 60 : name == "s" ? 1 : name == "ms" ? 1e-3 : 0;
+    if (name.empty() && unit == end && seconds == 0 && least > 1e9) {
+      seconds = value;  // a number alone
+      break;
+    }
+    if (scale == 0 || scale >= least) return {};  // from hours down, each once
+    least = scale;
+    seconds += value * scale;
+  }
+  if (!std::isfinite(seconds) || seconds <= 0) return {};
+  return seconds;
+}
+
+CLI::Validator duration() {
+  return validator([](const std::string& text) {
+    return parse_duration(text) ? std::string() : "'" + text + "' is not a time such as 10s, 90, 2m, 1m30s or 500ms";
   });
 }
 

@@ -17,6 +17,10 @@ void ProgressLine::show(const std::string& text) {
   shown_ = true;
 }
 
+void ProgressLine::show(const Progress& progress) {
+  if (enabled_) show(progress_text(progress));
+}
+
 void ProgressLine::clear() {
   if (!shown_) return;
   std::fputs("\r\033[K", stderr);

@@ -18,7 +18,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(const std::string& text);
-  void show(const Progress& progress) { show(progress_text(progress)); }
+  void show(const Progress& progress);
   void clear();
 
  private:

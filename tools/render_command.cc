@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -28,6 +29,7 @@ constexpr const char* kExamples =
     "  lanewise render box.dae                                  a quick look, to box.png\n"
     "  lanewise render box.dae -s 1024 -f box.exr               a clean picture, in floats\n"
     "  lanewise render box.dae -r 1920 1080 --noise 0.05        samples where the noise is\n"
+    "  lanewise render box.dae --time 10s                       the best picture in ten seconds\n"
     "  lanewise render box.dae --metal gold --alpha 0.05        another material";
 
 // Seconds that f takes, added to `seconds`.
@@ -85,12 +87,18 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   check_outputs(o);
   choose_isa(o.isa);
 
+  const auto start = std::chrono::steady_clock::now();
   RenderSeconds seconds;
   ProgressLine progress(o.quiet);
   progress.show("loading " + o.scene);
   Scene scene = timed(seconds.load, [&] { return load_chosen_scene(o); });
   progress.show("planning");
-  const Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
+  Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
+  if (o.settings.seconds > 0) {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    constexpr double kLeast = 1e-9;  // time is up: one sample a pixel
+    plan.settings.seconds = std::max(kLeast, o.settings.seconds - spent.count());
+  }
   const RenderResult result =
       timed(seconds.render, [&] { return render_with(o, plan, [&](const Progress& p) { progress.show(p); }); });
 
@@ -99,7 +107,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
                 {{"software", std::string("lanewise ") + kVersion},
                  {"command", command_line},
                  {"scene", o.scene},
-                 {"spp", std::to_string(o.settings.spp)},
+                 {"spp", samples_per_pixel(o, result.stats)},
                  {"seed", std::to_string(o.settings.seed)}});
     return true;
   });

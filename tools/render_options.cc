@@ -5,6 +5,7 @@
 
 #include "core/dimensions.h"
 #include "core/noise_film.h"
+#include "core/probes.h"
 #include "core/types.h"
 #include "tools/flags.h"
 
@@ -75,6 +76,11 @@ void add_sampling_flags(CLI::App& app, RenderOptions& o) {
                      std::to_string(kNoiseSpp))
       ->check(real_number(0, 10))
       ->type_name("X");
+  app.add_option_function<std::string>(
+         "--time", [&o](const std::string& time) { o.settings.seconds = parse_duration(time).value_or(0); },
+         "The best picture that is done in this time, loading included; -s and --noise may end it sooner")
+      ->check(duration())
+      ->type_name("T");
   add_choice<Sampler>(app, "--sampler", o.settings.sampler, {{"sobol", Sampler::kSobol}, {"random", Sampler::kRandom}},
                       "Numbers of a pixel's paths: an Owen-scrambled Sobol sequence, or independent ones");
   app.add_option("--seed", o.settings.seed, "Seed of the random numbers")
@@ -228,10 +234,14 @@ void complete(RenderOptions& o, const CLI::App& app) {
   std::tie(o.settings.adaptive_batch, o.settings.adaptive_tolerance) = o.adaptive;
   if (o.settings.noise > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--noise contradicts --adaptive (-a)");
-    if (app.count("--spp") == 0) o.settings.spp = kNoiseSpp;
+    if (app.count("--spp") == 0) o.settings.spp = o.settings.seconds > 0 ? NoiseFilm::kMaxSamples : kNoiseSpp;
     if (o.settings.spp < 2 * NoiseFilm::kFirstSamples) {
       throw UsageError("--noise: needs --spp (-s) of at least " + std::to_string(2 * NoiseFilm::kFirstSamples));
     }
+  }
+  if (o.settings.seconds > 0) {
+    if (o.settings.adaptive_batch > 0) throw UsageError("--time contradicts --adaptive (-a)");
+    if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = Probes::kMostSamples;
   }
   if (o.output.empty()) o.output = default_output(o.scene);
 }

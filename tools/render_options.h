@@ -21,7 +21,7 @@ struct RenderOptions {
   std::string camera_file;  // empty: the scene's camera
   std::string stats;        // the statistics' file; empty: none
   std::string rate;         // the file of the picture of sample counts; empty: none
-  Settings settings;
+  Settings settings;        // settings.seconds: as given, from the program's start
   Normals normals = Normals::kFile;
   std::string isa;  // empty: the best here
   Reference reference = Reference::kNone;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/probes.h"
 #include "tools/plan_report.h"
 #include "tools/text.h"
 #include "tools/version.h"
@@ -82,19 +83,27 @@ std::string stats_json(const RenderReport& r) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
+std::string samples_per_pixel(const RenderOptions& o, const RenderStats& stats) {
+  const Settings& settings = o.settings;
+  if (settings.adaptive_batch == 0 && settings.noise == 0 && settings.seconds == 0) return std::to_string(settings.spp);
+  char mean[32];
+  std::snprintf(mean, sizeof mean, "%.1f", stats.samples_per_pixel);
+  return mean;
+}
+
 std::string summary(const RenderReport& r) {
   const Settings& settings = r.options.settings;
   const RenderStats& s = r.stats;
   std::string text = r.options.scene + " -> " + r.options.output + "\n";
   text += std::to_string(settings.window().width) + " x " + std::to_string(settings.window().height) + ", ";
   const bool adaptive = settings.adaptive_batch > 0 || settings.noise > 0;
-  if (adaptive) {
-    char mean[32];
-    std::snprintf(mean, sizeof mean, "%.1f", s.samples_per_pixel);
-    text += std::string(mean) + " of at most ";
-  }
-  text += count_of(settings.spp, "sample") + " per pixel, depth " + std::to_string(settings.max_depth) + ", " +
-          count_of(s.threads, "thread") + ", " + r.isa + "\n";
+  // Without -s, --time has no limit worth telling.
+  const bool limited = settings.seconds == 0 || settings.spp < Probes::kMostSamples;
+  if (adaptive || settings.seconds > 0)
+    text += samples_per_pixel(r.options, s) + (limited ? " of at most " : " samples");
+  if (limited) text += count_of(settings.spp, "sample");
+  text += " per pixel, depth " + std::to_string(settings.max_depth) + ", " + count_of(s.threads, "thread") + ", " +
+          r.isa + "\n";
   if (adaptive) {
     const std::string aim = settings.noise > 0
                                 ? "standard error of " + short_number(100 * settings.noise) + " %"
