@@ -33,12 +33,9 @@ class Rounds {
       if (!whole) break;
       draw_probes(count);
       seconds_per_sample_ = (clock_() - begin) / count;
-      // The last round's follows below.
-      if (done_ < settings_.spp && (progress_ || timed())) estimate();
+      if (done_ < settings_.spp && (progress_ || timed())) close();
     }
-    estimate();
-    const Window window = settings_.window();
-    return {develop(film_, settings_.width, window), sample_counts(film_, settings_.width, window), 1, error_};
+    return close();
   }
 
  private:
@@ -104,12 +101,18 @@ class Rounds {
     rays_ += rays;
   }
 
-  void estimate() {
-    if (probes_.samples() < 2) return;
+  // The picture as it is.
+  Exposure close() {
     const double begin = clock_();
-    error_ = estimate_error(mean_picture(film_, settings_.width, settings_.window()), probes_, threads_);
-    closing_ = 2 * (clock_() - begin);  // and as long again to develop the picture
+    const Window window = settings_.window();
+    if (probes_.samples() > 1) {
+      error_ = estimate_error(mean_picture(film_, settings_.width, window), probes_, threads_);
+    }
+    Exposure exposure{develop(film_, settings_.width, window), sample_counts(film_, settings_.width, window), 1,
+                      error_};
+    closing_ = clock_() - begin;
     report(done_);
+    return exposure;
   }
 
   void report(double samples) const {
@@ -124,7 +127,7 @@ class Rounds {
   const std::function<void(const Progress&)>& progress_;
   const Clock& clock_;
   double start_;
-  double closing_ = 0;  // seconds to keep for what follows the last round
+  double closing_ = 0;  // seconds that close() takes, to be kept for the last one
   double seconds_per_sample_ = 0;
   uint32_t done_ = 0;  // samples of each pixel
   uint64_t rays_ = 0;

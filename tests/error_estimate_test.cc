@@ -8,6 +8,8 @@
 #include "core/image_compare.h"
 #include "core/noise_film.h"
 #include "core/probes.h"
+#include "core/render.h"
+#include "core/verify/test_scene.h"
 #include "tests/made_up_draw.h"
 
 namespace lanewise {
@@ -114,6 +116,28 @@ TEST_CASE("error estimate: --noise knows it from its halves") {
   REQUIRE(got.error);
   CHECK(got.error->mrse == doctest::Approx(measured(got, draw)).epsilon(0.15));
   CHECK(got.error->mrse < 0.01);
+}
+
+TEST_CASE("error estimate: of a rendered picture, with either sampler") {
+#ifdef NDEBUG
+  const uint32_t samples = 16, many = 1024;
+#else
+  const uint32_t samples = 4, many = 64;
+#endif
+  Settings settings;
+  settings.width = 64, settings.height = 48, settings.max_depth = 3;
+  settings.spp = many, settings.seed = 1;
+  const Image truth = render(make_plan(test::test_box(), settings)).image;
+  settings.spp = samples, settings.seed = 0;
+  settings.estimate_error = true;
+  for (const Sampler sampler : {Sampler::kSobol, Sampler::kRandom}) {
+    settings.sampler = sampler;
+    const RenderResult got = render(make_plan(test::test_box(), settings));
+    const double measured = compare_images(got.image, truth).mrse;
+    REQUIRE(got.stats.error);
+    CAPTURE(measured);
+    CHECK(got.stats.error->mrse == doctest::Approx(measured).epsilon(0.2));
+  }
 }
 
 TEST_CASE("probes: one pixel in 32, fewer apart in small pictures, all within the window") {

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 namespace lanewise {
 namespace {
@@ -49,21 +50,19 @@ CLI::Validator real_number(double lo, double hi) {
 }
 
 std::optional<double> parse_duration(const std::string& text) {
-  double seconds = 0, least = std::numeric_limits<double>::infinity();
-  for (const char *at = text.data(), *const end = at + text.size(); at != end || text.empty();) {
-    double value = 0;
-    const auto [unit, error] = std::from_chars(at, end, value, std::chars_format::fixed);
-    if (error != std::errc() || value < 0) return {};
-    at = std::find_if(unit, end, [](char c) { return c < 'a' || c > 'z'; });
-    const std::string_view name(unit, static_cast<size_t>(at - unit));
-    const double scale = name == "h" ? 3600 : name == "m" ? 60 : name == "s" ? 1 : name == "ms" ? 1e-3 : 0;
-    if (name.empty() && unit == end && seconds == 0 && least > 1e9) {
-      seconds = value;  // a number alone
-      break;
+  constexpr std::pair<std::string_view, double> kUnits[] = {{"h", 3600}, {"m", 60}, {"s", 1}, {"ms", 1e-3}};
+  double seconds = 0;
+  if (!parse(text, seconds)) {
+    const auto* unit = std::begin(kUnits);
+    for (const char *at = text.data(), *const end = at + text.size(); at != end;) {
+      double value = 0;
+      const auto [name, error] = std::from_chars(at, end, value, std::chars_format::fixed);
+      at = std::find_if(name, end, [](char c) { return c < 'a' || c > 'z'; });
+      const std::string_view given(name, static_cast<size_t>(at - name));
+      unit = std::find_if(unit, std::end(kUnits), [&](const auto& u) { return u.first == given; });
+      if (error != std::errc() || value < 0 || unit == std::end(kUnits)) return {};
+      seconds += value * unit++->second;
     }
-    if (scale == 0 || scale >= least) return {};  // from hours down, each once
-    least = scale;
-    seconds += value * scale;
   }
   if (!std::isfinite(seconds) || seconds <= 0) return {};
   return seconds;

@@ -16,7 +16,7 @@ CLI::Validator whole_number(uint64_t lo, uint64_t hi, uint64_t step = 1);
 // A finite number in [lo, hi], or in (0, hi] for lo = 0.
 CLI::Validator real_number(double lo, double hi);
 
-// A span of time: "90" (seconds), "10s", "500ms", "2m", "1h", "1m30s". Seconds; nothing if it is none, or not above 0.
+// A span of time: "90" (seconds), "10s", "500ms", "2m", "1h1m30s". Seconds; nothing if it is none, or not above 0.
 std::optional<double> parse_duration(const std::string& text);
 CLI::Validator duration();
 
