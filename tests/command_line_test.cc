@@ -403,9 +403,16 @@ TEST_CASE("command line: --time ends by itself, and with -s where that comes fir
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
   const std::vector<float> four = picture_of(folder, {box()});  // -s 4
-  for (const char* time : {"1000000", "1h30m", "90.5m", "9h1m1s1ms"}) {
+  for (const auto& [time, seconds] : std::vector<std::pair<std::string, double>>{{"1000", 1000},
+                                                                                 {"1234.5s", 1234.5},
+                                                                                 {"500000ms", 500},
+                                                                                 {"1h30m", 5400},
+                                                                                 {"90.5m", 5430},
+                                                                                 {"9h1m1s1ms", 32461.001}}) {
     CAPTURE(time);
-    CHECK(picture_of(folder, {box(), "--time", time}) == four);
+    CHECK(picture_of(folder, {box(), "--time", time, "--stats", "stats.json"}) == four);
+    const nlohmann::json stats = nlohmann::json::parse(test::read_text(folder.file("stats.json")));
+    CHECK(stats["time_budget"].get<double>() == doctest::Approx(seconds).epsilon(1e-12));
   }
   picture_of(folder, {box(), "--time", "1ms", "-s", "1000000", "--stats", "stats.json"});
   const nlohmann::json stats = nlohmann::json::parse(test::read_text(folder.file("stats.json")));

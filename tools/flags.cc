@@ -51,8 +51,10 @@ CLI::Validator real_number(double lo, double hi) {
 
 std::optional<double> parse_duration(const std::string& text) {
   constexpr std::pair<std::string_view, double> kUnits[] = {{"h", 3600}, {"m", 60}, {"s", 1}, {"ms", 1e-3}};
-  double seconds = 0;
-  if (!parse(text, seconds)) {
+  double number = 0, seconds = 0;
+  if (parse(text, number)) {
+    seconds = number;
+  } else {
     const auto* unit = std::begin(kUnits);
     for (const char *at = text.data(), *const end = at + text.size(); at != end;) {
       double value = 0;

@@ -76,11 +76,6 @@ void add_sampling_flags(CLI::App& app, RenderOptions& o) {
                      std::to_string(kNoiseSpp))
       ->check(real_number(0, 10))
       ->type_name("X");
-  app.add_option_function<std::string>(
-         "--time", [&o](const std::string& time) { o.settings.seconds = parse_duration(time).value_or(0); },
-         "The best picture that is done in this time, loading included; -s and --noise may end it sooner")
-      ->check(duration())
-      ->type_name("T");
   add_choice<Sampler>(app, "--sampler", o.settings.sampler, {{"sobol", Sampler::kSobol}, {"random", Sampler::kRandom}},
                       "Numbers of a pixel's paths: an Owen-scrambled Sobol sequence, or independent ones");
   app.add_option("--seed", o.settings.seed, "Seed of the random numbers")
@@ -140,6 +135,14 @@ void add_machine_flags(CLI::App& app, RenderOptions& o) {
       ->check(one_of(isas))
       ->type_name(join_names(isas))
       ->default_str("the best here");
+}
+
+void add_time_flag(CLI::App& app, RenderOptions& o) {
+  app.add_option_function<std::string>(
+         "--time", [&o](const std::string& time) { o.settings.seconds = parse_duration(time).value_or(0); },
+         "The best picture that is done in this time, loading included; -s and --noise may end it sooner")
+      ->check(duration())
+      ->type_name("T");
 }
 
 void add_reference_flag(CLI::App& app, RenderOptions& o) {
@@ -208,6 +211,8 @@ void add_scene_options(CLI::App& app, RenderOptions& o) {
 
 void add_render_options(CLI::App& app, RenderOptions& o) {
   add_scene_options(app, o);
+  app.option_defaults()->group("Sampling");
+  add_time_flag(app, o);
   app.option_defaults()->group("Machine");
   add_reference_flag(app, o);
   app.option_defaults()->group("Output");

@@ -41,7 +41,7 @@ struct RenderOptions {
 // which must live until the parse.
 void add_scene_options(CLI::App& app, RenderOptions& options);
 
-// The same, --reference, and the files that a render writes.
+// The same, --time, --reference, and the files that a render writes.
 void add_render_options(CLI::App& app, RenderOptions& options);
 
 // After the parse: what depends on several flags. Throws UsageError.

@@ -69,6 +69,7 @@ std::string stats_json(const RenderReport& r) {
       {"converged", s.converged},
       {"paths_by_length", s.paths_by_length},
   };
+  if (settings.seconds > 0) json["time_budget"] = settings.seconds;
   if (s.error) json["estimated_mrse"] = {{"value", s.error->mrse}, {"low", s.error->low}, {"high", s.error->high}};
   json["plan"] = decisions_json(r.plan);
   json["stages"] = nlohmann::ordered_json::array();
