@@ -113,7 +113,7 @@ HWY_INLINE MF AnyFlatHit(const Plan& plan, const Vec3& o, const Vec3& dir, MF wa
   for (const FlatSphere& sphere : plan.flat_spheres) {
     const Vec3 to = Sub(o, SplatVec3(sphere.center));
     const VF f[3] = {to.x, to.y, to.z};
-    hit = hn::Or(hit, hn::Lt(SphereRoot(d, f, slope, a, inv_a, Splat(sphere.radius)), one));
+    hit = hn::Or(hit, SphereWithinSegment(d, f, slope, a, inv_a, Splat(sphere.radius)));
   }
   return hit;
 }

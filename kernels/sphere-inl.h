@@ -39,6 +39,25 @@ HWY_INLINE V SphereRoot(D d, const V (&f)[3], const V (&dir)[3], V a, V inv_a, V
                         hn::Set(d, std::numeric_limits<float>::infinity()));
 }
 
+// Whether that root is below 1, without it: no square root, no division.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> SphereWithinSegment(D d, const V (&f)[3], const V (&dir)[3], V a, V inv_a, V radius) {
+  const V zero = hn::Zero(d);
+  const V b = hn::Neg(hn::MulAdd(f[0], dir[0], hn::MulAdd(f[1], dir[1], hn::Mul(f[2], dir[2]))));
+  const V s = hn::Mul(b, inv_a);
+  const V x = hn::MulAdd(s, dir[0], f[0]), y = hn::MulAdd(s, dir[1], f[1]), z = hn::MulAdd(s, dir[2], f[2]);
+  const V r2 = hn::Mul(radius, radius);
+  const V depth2 = hn::Sub(r2, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+  const V c = hn::Sub(hn::MulAdd(f[0], f[0], hn::MulAdd(f[1], f[1], hn::Mul(f[2], f[2]))), r2);
+  // From outside c / (b + sqrt(a depth2)) < 1, ahead if b > 0; from inside (b + sqrt(a depth2)) / a < 1.
+  const V half2 = hn::Mul(a, depth2), short_of = hn::Sub(c, b), rest = hn::Sub(a, b);
+  const auto before = hn::Or(hn::Lt(short_of, zero), hn::Lt(hn::Mul(short_of, short_of), half2));
+  const auto from_outside = hn::And(hn::And(hn::Gt(b, zero), hn::Ge(depth2, zero)), before);
+  const auto from_inside = hn::And(hn::Gt(rest, zero), hn::Lt(half2, hn::Mul(rest, rest)));
+  const auto inside = hn::Lt(c, zero);
+  return hn::Or(hn::And(inside, from_inside), hn::AndNot(inside, from_outside));
+}
+
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
 }  // namespace lanewise
