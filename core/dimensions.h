@@ -11,20 +11,19 @@
 namespace lanewise {
 
 // Sets of a bounce; kSetLight has one for each light and sample of it but the very first, which is kSetPath's: add
-// light * light_samples + light_sample.
+// light * light_samples + light_sample. Those of connections follow, by light and sample again.
 enum RandomPurpose : uint32_t {
-  kSetPath =
-      0,  // the way to the vertex (place in the pixel, or direction from the vertex before); its first light sample
+  kSetPath = 0,  // the way to the vertex (place in the pixel, or direction from the one before); its first light sample
   kSetChoice = 1,             // lobe, roulette, patch of the first light sample
   kSetLens = 2,               // point on the lens (bounce 0 only)
   kSetLight = 3,              // a light sample
-  kSetsPerBounce = 1u << 16,  // so at most 65,533 light samples a vertex, and 65,535 bounces
+  kSetsPerBounce = 1u << 16,  // so at most 65,533 samples of lights and connections a vertex, and 65,535 bounces
 };
 
 // Which of a set's four numbers.
 enum PathDraw : uint32_t { kDrawU = 0, kDrawV = 1 };
 enum ChoiceDraw : uint32_t { kDrawLobe = 0, kDrawRoulette = 1, kDrawFirstPatch = 2 };
-enum LightDraw : uint32_t { kDrawPatch = 0, kDrawLightU = 2, kDrawLightV = 3 };
+enum LightDraw : uint32_t { kDrawPatch = 0, kDrawSphere = 1, kDrawLightU = 2, kDrawLightV = 3 };
 
 constexpr uint32_t random_set(uint32_t bounce, uint32_t purpose) { return bounce * kSetsPerBounce + purpose; }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <span>
 
 #include "core/explain_topics.h"
+#include "core/plan_connections.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -42,6 +44,24 @@ std::string why_no_light_samples(const Plan& plan) {
   return plan.lights.empty() ? "no light" : "";
 }
 
+bool has_delta_sphere(const Plan& plan) {
+  const auto bins = std::span(plan.prim_bin).subspan(plan.triangles);
+  return std::ranges::any_of(bins, [](uint32_t bin) { return bin == kMirror || bin == kGlass; });
+}
+
+std::string why_no_connections(const Plan& plan) {
+  if (const std::string why = why_no_light_samples(plan); !why.empty()) return why;
+  if (plan.settings.direct == Direct::kHemisphere) return "--direct hemisphere";
+  if (!plan.settings.connect) return "--connect off";
+  if (plan.connected_spheres.empty()) {
+    return has_delta_sphere(plan)
+               ? "only for up to " + count_of(kMaxConnectedLights, "light") + " and " +
+                     count_of(kMaxConnectedSpheres, "mirror or glass sphere") + ", in places of their own"
+               : "no mirror or glass sphere";
+  }
+  return connects_at(plan, 0) ? "" : "-m 1: no path meets a light behind a rough surface and a sphere";
+}
+
 std::string why_no_material(const Plan& plan, Bin bin) {
   if (const std::string why = why_nothing_scatters(plan); !why.empty()) return why;
   return has_bin(plan, bin) ? "" : std::string("no ") + material_name(bin);
@@ -61,6 +81,7 @@ std::string why_so(const Plan& plan, Stage stage) {
       return settings.lens_radius > 0 ? "a thin lens: a point of it for every path" : "a pinhole: no lens is sampled";
     case Stage::kIntersect:
     case Stage::kOcclude:
+    case Stage::kOccludeConnection:
     case Stage::kGatherEmission:
       if (!trees) return "flat lists alone: no ray leaves its vector";
       return plan.flat_quads.empty() && plan.flat_triangles.empty() && plan.flat_spheres.empty()
@@ -78,6 +99,9 @@ std::string why_so(const Plan& plan, Stage stage) {
              " each: " + count_of(plan.lights.size() * settings.light_samples, "call") + " a bounce";
     case Stage::kSampleHemisphere:
       return "--direct hemisphere, " + count_of(settings.light_samples, "sample") + " a vertex";
+    case Stage::kConnectSphere:
+      return "light by way of a reflection at " + count_of(plan.connected_spheres.size(), "sphere") +
+             ", one chosen by each sample of a light";
     case Stage::kRoulette:
       return "from bounce " + std::to_string(kRouletteBounce) + " on";
     default:
@@ -102,6 +126,9 @@ std::string why_left_out(const Plan& plan, Stage stage) {
     case Stage::kGatherEmission:
       if (!hemisphere) return "only for --direct hemisphere";
       return why_no_light_samples(plan);
+    case Stage::kConnectSphere:
+    case Stage::kOccludeConnection:
+      return why_no_connections(plan);
     case Stage::kLightDiffuse:
       return why_no_light_stage(plan, kDiffuse);
     case Stage::kLightMicrofacet:

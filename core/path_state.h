@@ -32,7 +32,7 @@ namespace lanewise {
   KEPT(float, beta_r, "throughput: product of f cos / pdf so far; 0 ends the path")                      \
   KEPT(float, beta_g, "")                                                                                \
   KEPT(float, beta_b, "")                                                                                \
-  KEPT(float, pdf, "density of d per steradian at the last scattering; 0: camera or delta lobe")         \
+  KEPT(float, pdf, "density of d per steradian when last scattered; 0: camera, delta; or kConnected")    \
   KEPT(uint32_t, prim, "primitive hit, or kNoPrim")                                                      \
   KEPT(float, t, "distance to the hit, +inf for none")                                                   \
   KEPT(float, u, "barycentric weight of a triangle's second vertex at the hit (0 for spheres)")          \
@@ -49,17 +49,26 @@ namespace lanewise {
   LOCAL(float, l_y, "")                                                                                  \
   LOCAL(float, l_z, "")                                                                                  \
   LOCAL(float, l_pdf, "density of the light sample's direction per steradian; 0: no usable sample")      \
-  LOCAL(float, c_r, "radiance that the light sample adds to L if it is seen")                            \
+  LOCAL(float, m_x, "connection: shadow ray on from where l ends, to the offset light point")            \
+  LOCAL(float, m_y, "")                                                                                  \
+  LOCAL(float, m_z, "")                                                                                  \
+  LOCAL(uint32_t, via, "connection: by way of which of Plan::connected_spheres")                         \
+  LOCAL(float, c_r, "radiance that the light sample adds to L if it is seen; not yet what via reflects") \
   LOCAL(float, c_g, "")                                                                                  \
   LOCAL(float, c_b, "")
 
 constexpr int kRetiredFields = 4;  // slot and L
+
+// In place of pdf after the delta lobe of a sphere by way of which the vertex before has been connected to the lights: what
+// light is met next has been counted there.
+constexpr float kConnected = -1;
 
 // What all paths of a wave share at one moment.
 struct Step {
   uint32_t bounce = 0;        // scattering events behind every live path
   uint32_t light = 0;         // the light that sample_light samples
   uint32_t light_sample = 0;  // which of the plan's samples of that light
+  bool connection = false;    // by way of a sphere: see core/plan_connections.h
 };
 
 // The samples that a wave computes: its path i is sample first_sample + j % samples of pixel pixels[j / samples], with

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/dimensions.h"
+#include "core/plan_connections.h"
 #include "core/plan_flat.h"
 #include "core/plan_lights.h"
 #include "core/plan_trees.h"
@@ -70,6 +71,7 @@ class Planner {
     find_slabs(plan_);
     build_trees();
     choose_stages();
+    connect_spheres(plan_);
     check_random_sets();
     return std::move(plan_);
   }
@@ -244,7 +246,8 @@ class Planner {
 
   // Every light sample of a vertex draws a set of its own.
   void check_random_sets() const {
-    const uint64_t sets = uint64_t{plan_.lights.size()} * plan_.settings.light_samples;
+    const uint64_t lights = plan_.lights.size() * (plan_.connected_spheres.empty() ? 1 : 2);
+    const uint64_t sets = lights * plan_.settings.light_samples;
     if (sets > kSetsPerBounce - kSetLight) {
       throw Error(scene_.path + ": " + std::to_string(plan_.lights.size()) + " lights with " +
                   std::to_string(plan_.settings.light_samples) + " samples each are too many; at most " +

@@ -75,6 +75,16 @@ struct PlanLight {
   float radius = 0;
 };
 
+// A mirror or glass sphere by way of which lights are sampled: see core/plan_connections.h.
+struct ConnectedSphere {
+  float center[3] = {0, 0, 0};
+  float radius = 0;
+  float err = 0;  // distance along the normal that puts a ray's end safely off it
+  float ior = 0;  // of glass; 0: a mirror
+  float reflectance[3] = {0, 0, 0};
+  float importance = 0;  // a vertex at distance r chooses it with a chance that goes with importance (radius / r)^2
+};
+
 // A triangle or sphere outside the trees, tested by whole vectors of rays.
 struct FlatTriangle {
   float v[3][3];  // vertex, axis
@@ -179,7 +189,8 @@ struct Plan {
   AlignedVector<PlanMaterial> materials;
   AlignedVector<LightPatch> light_patches;
   std::vector<PlanLight> lights;
-  AlignedVector<float> light_table;  // 4 a light, to gather by light: radiance, area
+  AlignedVector<float> light_table;                // 4 a light, to gather by light: radiance, area
+  std::vector<ConnectedSphere> connected_spheres;  // all mirrors and glasses among the spheres, or none
 
   // Where rays look for them: every primitive is in exactly one of quads, triangles, spheres and the two trees. Of quads and triangles the first are
   // those that can block light between two points of the scene: one with all geometry on one side of its plane cannot.

@@ -3,9 +3,11 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/plan_connections.h"
 #include "core/render.h"
 #include "core/schedule.h"
 #include "core/stats.h"
+#include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
@@ -44,6 +46,22 @@ void shade(const Plan& plan, Path<T>& p) {
 }
 
 template <class T>
+bool is_black(const Path<T>& p) {
+  return p.c_r == 0 && p.c_g == 0 && p.c_b == 0;
+}
+
+template <class T>
+void add_connection(const Plan& plan, Path<T>& p, Profile& profile) {
+  p.step.connection = true;
+  reference::connect_sphere(plan, p);
+  weigh_light(plan, p);
+  p.step.connection = false;
+  if (is_black(p)) return;
+  profile.shadow_rays += 2;
+  reference::occlude_connection(plan, p);
+}
+
+template <class T>
 void add_direct_light(const Plan& plan, Path<T>& p, Profile& profile) {
   const Settings& settings = plan.settings;
   if (p.bin >= kRoughBins || settings.direct == Direct::kBsdf) return;
@@ -53,9 +71,11 @@ void add_direct_light(const Plan& plan, Path<T>& p, Profile& profile) {
     for (p.step.light_sample = 0; p.step.light_sample < settings.light_samples; ++p.step.light_sample) {
       hemisphere ? reference::sample_hemisphere(plan, p) : reference::sample_light(plan, p);
       weigh_light(plan, p);
-      if (p.c_r == 0 && p.c_g == 0 && p.c_b == 0) continue;
-      ++profile.shadow_rays;
-      hemisphere ? reference::gather_emission(plan, p) : reference::occlude(plan, p);
+      if (!is_black(p)) {
+        ++profile.shadow_rays;
+        hemisphere ? reference::gather_emission(plan, p) : reference::occlude(plan, p);
+      }
+      if (connects_at(plan, p.step.bounce)) add_connection(plan, p, profile);
     }
   }
 }

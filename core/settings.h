@@ -34,6 +34,7 @@ struct Settings {
   double lens_radius = 0;     // -b: of a thin lens, in scene units; 0: a pinhole
   double focal_distance = 1;  // -d: along the view axis, of the plane that the lens shows sharp, > 0
   Direct direct = Direct::kMis;
+  bool connect = true;  // connections by way of mirror and glass spheres: see core/plan_connections.h
   BsdfSampling bsdf_sampling = BsdfSampling::kVndf;
   Fresnel fresnel = Fresnel::kExact;
   uint32_t adaptive_batch = 0;       // -a: samples between two decisions; 0: off

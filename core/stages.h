@@ -7,24 +7,26 @@
 namespace lanewise {
 
 //   X(enumerator, name of the kernel)
-#define LANEWISE_STAGES(X)                \
-  X(kGenerate, generate)                  \
-  X(kIntersect, intersect)                \
-  X(kSort, sort)                          \
-  X(kEmission, emission)                  \
-  X(kRetire, retire)                      \
-  X(kSurface, surface)                    \
-  X(kSampleLight, sample_light)           \
-  X(kSampleHemisphere, sample_hemisphere) \
-  X(kLightDiffuse, light_diffuse)         \
-  X(kLightMicrofacet, light_microfacet)   \
-  X(kOcclude, occlude)                    \
-  X(kGatherEmission, gather_emission)     \
-  X(kShadeDiffuse, shade_diffuse)         \
-  X(kShadeMicrofacet, shade_microfacet)   \
-  X(kShadeMirror, shade_mirror)           \
-  X(kShadeGlass, shade_glass)             \
-  X(kRoulette, roulette)                  \
+#define LANEWISE_STAGES(X)                  \
+  X(kGenerate, generate)                    \
+  X(kIntersect, intersect)                  \
+  X(kSort, sort)                            \
+  X(kEmission, emission)                    \
+  X(kRetire, retire)                        \
+  X(kSurface, surface)                      \
+  X(kSampleLight, sample_light)             \
+  X(kSampleHemisphere, sample_hemisphere)   \
+  X(kConnectSphere, connect_sphere)         \
+  X(kLightDiffuse, light_diffuse)           \
+  X(kLightMicrofacet, light_microfacet)     \
+  X(kOcclude, occlude)                      \
+  X(kOccludeConnection, occlude_connection) \
+  X(kGatherEmission, gather_emission)       \
+  X(kShadeDiffuse, shade_diffuse)           \
+  X(kShadeMicrofacet, shade_microfacet)     \
+  X(kShadeMirror, shade_mirror)             \
+  X(kShadeGlass, shade_glass)               \
+  X(kRoulette, roulette)                    \
   X(kAccumulate, accumulate)
 
 enum class Stage : uint8_t {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/plan_connections.h"
+
 namespace lanewise {
 namespace {
 
@@ -29,6 +31,10 @@ Kernel* kernel_of(Stage stage) {
       return occlude;
     case Stage::kGatherEmission:
       return gather_emission;
+    case Stage::kConnectSphere:
+      return connect_sphere;
+    case Stage::kOccludeConnection:
+      return occlude_connection;
     case Stage::kShadeDiffuse:
       return shade_diffuse;
     case Stage::kShadeMicrofacet:
@@ -85,27 +91,40 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   profile_.invalid_samples += accumulate(state_, film);
 }
 
-// Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn.
+// Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn, straight and by
+// way of a sphere.
 void Wave::add_direct_light(const Bins& bins) {
-  const Range rough = bins.span(0, kRoughBins);
-  const uint32_t paths = bins.paths(0, kRoughBins);
   const Settings& settings = plan_.settings;
-  if (paths == 0 || settings.direct == Direct::kBsdf) return;
+  if (bins.paths(0, kRoughBins) == 0 || settings.direct == Direct::kBsdf) return;
   const bool hemisphere = settings.direct == Direct::kHemisphere;  // meets all lights at once
+  const bool connects = connects_at(plan_, state_.step.bounce);
   const uint32_t lights = hemisphere ? 1 : static_cast<uint32_t>(plan_.lights.size());
   for (uint32_t light = 0; light < lights; ++light) {
     for (uint32_t sample = 0; sample < settings.light_samples; ++sample) {
       state_.step.light = light;
       state_.step.light_sample = sample;
-      run(hemisphere ? Stage::kSampleHemisphere : Stage::kSampleLight, rough, paths);
-      for (const ShadeStages& stages : plan_.shade_stages) {
-        if (stages.light != Stage::kCount) run(stages.light, bins[stages.bin]);
+      if (hemisphere) {
+        add_light_sample(bins, Stage::kSampleHemisphere, Stage::kGatherEmission, 1);
+      } else {
+        add_light_sample(bins, Stage::kSampleLight, Stage::kOcclude, 1);
       }
-      const Stage trace = hemisphere ? Stage::kGatherEmission : Stage::kOcclude;
-      profile_.count_rays(trace, state_.step.bounce, count_shadow_rays(state_, rough));
-      run(trace, rough, paths);
+      if (!connects) continue;
+      state_.step.connection = true;
+      add_light_sample(bins, Stage::kConnectSphere, Stage::kOccludeConnection, 2);
+      state_.step.connection = false;
     }
   }
+}
+
+void Wave::add_light_sample(const Bins& bins, Stage aim, Stage trace, uint32_t rays) {
+  const Range rough = bins.span(0, kRoughBins);
+  const uint32_t paths = bins.paths(0, kRoughBins);
+  run(aim, rough, paths);
+  for (const ShadeStages& stages : plan_.shade_stages) {
+    if (stages.light != Stage::kCount) run(stages.light, bins[stages.bin]);
+  }
+  profile_.count_rays(trace, state_.step.bounce, rays * count_shadow_rays(state_, rough));
+  run(trace, rough, paths);
 }
 
 void Wave::run(Stage stage, const PathState& s, Range range, uint32_t paths) {

@@ -28,6 +28,9 @@ class Wave {
   // Counts a call, and clocks it as long as what is returned lasts.
   Profiler::Call count(Stage stage, Range range, uint32_t paths);
   void add_direct_light(const Bins& bins);
+  // One sample of the light of state_.step at the vertices in the rough bins: `aim` makes it, `trace` adds it where it is seen,
+  // by as many rays each.
+  void add_light_sample(const Bins& bins, Stage aim, Stage trace, uint32_t rays);
 
   const Plan& plan_;
   uint32_t size_;

@@ -42,7 +42,8 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
     LaneRecords(plan.light_table.data(), 4, light).Get4(0, radiance.x, radiance.y, radiance.z, area);
 
     const VF pdf = hn::Load(d, s.pdf + i);
-    const MF alone = hn::Eq(pdf, zero);  // no light sample could have made this path
+    const MF alone = hn::Eq(pdf, zero);    // no light sample could have made this path
+    const MF counted = hn::Lt(pdf, zero);  // kConnected
     VF weight = one;
     if (direct == Direct::kMis) {
       const VF light_pdf = hn::Div(hn::Mul(light_samples, hn::Mul(t, t)), hn::Mul(area, cosine));
@@ -52,6 +53,7 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
       weight = hn::IfThenElseZero(alone, one);
     }
     weight = hn::IfThenElseZero(hn::Gt(cosine, zero), weight);
+    weight = hn::IfThenZeroElse(counted, weight);
 
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const Vec3 L = LoadVec3(s.L_r, s.L_g, s.L_b, i);

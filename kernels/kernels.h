@@ -63,7 +63,7 @@ Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
 constexpr KernelFields kSortFields = {.reads = "bin KEPT", .writes = "KEPT"};
 
 // Adds the radiance of the light that was hit from its front, weighted against light sampling by the power heuristic
-// (Veach 1997, eq. 9.13 with exponent 2).
+// (Veach 1997, eq. 9.13 with exponent 2). None where a connection has counted it: see kConnected.
 void emission(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kEmissionFields = {.reads = "prim t o d beta pdf L", .writes = "L"};
 // Hangs on the cosine at grazing angles; front or back is a choice.
@@ -94,8 +94,20 @@ void sample_hemisphere(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kSampleHemisphereFields = {.reads = "pixel sample d s step", .writes = "l l_pdf"};
 constexpr KernelBounds kSampleHemisphereBounds = {.fields = {ulps("l", 3), exact("l_pdf")}};
 
+// Samples light step.light by area, by way of one of the plan's connected spheres, and aims at where that reflects it
+// (kernels/reflection-inl.h); m goes on from there. l_pdf is the density of l, over the reflectance by Fresnel of glass; 0
+// where nothing is reflected.
+void connect_sphere(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kConnectSphereFields = {.reads = "pixel sample o n err step", .writes = "l m l_pdf via"};
+// The density has no bound where light grazes; and near the sphere's horizon it goes with small heights over a tangent plane,
+// which come from larger numbers: so above 4 ulp.
+constexpr KernelBounds kConnectSphereBounds = {
+    .fields = {reach_ulps("l", 2.5), reach_ulps("m", 2.5), inverse_input_ulps("l_pdf", 20), exact("via")},
+    .choice = {.margin = 4, .max_share = 2e-4}};
+
 // light_<material>: what the light sample adds if it is seen: c = beta f |cos| radiance / (l_pdf samples), times the MIS
-// weight against the material's own density. With -H the radiance is not known yet and left out.
+// weight against the material's own density. With -H the radiance is not known yet and left out. Of connections
+// the material's density is not weighed against, but says which are left to BSDF sampling (c = 0): see kMostConnectedPdf.
 // shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves the origin off the surface.
 void light_diffuse(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kLightDiffuseFields = {.reads = "prim d s beta l l_pdf step", .writes = "c"};
@@ -124,15 +136,15 @@ constexpr KernelFields kShadeMicrofacetFields = {.reads = "pixel sample prim o d
 constexpr KernelBounds kShadeMicrofacetBounds = {
     .fields = {input_ulps("beta", 160, 1e-24), ulps("o", 0.9), input_ulps("d", 64), input_ulps("pdf", 13)},
     .choice = {.margin = 4, .max_share = 2e-4}};
-// Perfect reflection; pdf = 0 (delta).
+// Perfect reflection; pdf = 0 (delta), or kConnected.
 void shade_mirror(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kShadeMirrorFields = {.reads = "prim o d n s err beta", .writes = "o d beta pdf"};
+constexpr KernelFields kShadeMirrorFields = {.reads = "prim o d n s err beta pdf", .writes = "o d beta pdf"};
 constexpr KernelBounds kShadeMirrorBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 3), exact("pdf")},
                                              .choice = {.margin = 4, .max_share = 2e-4}};
 // Smooth dielectric: reflects or refracts by the Fresnel reflectance; refracted radiance scales with the squared ratio
-// of indices (Veach 1997, ch. 5); pdf = 0 (delta).
+// of indices (Veach 1997, ch. 5); pdf = 0 (delta), or kConnected.
 void shade_glass(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kShadeGlassFields = {.reads = "pixel sample prim o d n s err beta step",
+constexpr KernelFields kShadeGlassFields = {.reads = "pixel sample prim o d n s err beta pdf step",
                                             .writes = "o d beta pdf"};
 // The refracted direction hangs on a root near the critical angle. A choice is also that of the lobe.
 constexpr KernelBounds kShadeGlassBounds = {
@@ -145,6 +157,12 @@ void occlude(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kOccludeFields = {.reads = "o n err l c L", .writes = "L"};
 // The choice: blocked or not.
 constexpr KernelBounds kOccludeBounds = {.fields = {ulps("L", 1)}, .choice = {.margin = 4, .max_share = 2e-4}};
+
+// The same for a connection, on l and from where it ends on m: L += c times the reflectance of via.
+void occlude_connection(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kOccludeConnectionFields = {.reads = "o n err l m via c L", .writes = "L"};
+constexpr KernelBounds kOccludeConnectionBounds = {.fields = {ulps("L", 2)},
+                                                   .choice = {.margin = 4, .max_share = 2e-4}};
 
 // -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter. Not traced where c = 0.
 void gather_emission(const Plan& plan, const PathState& s, Range range);

@@ -57,18 +57,43 @@ class AnySphere : public SphereLeaves {
   float* blocked_;
 };
 
+// The segments of a shadow ray: to the light; or of a connection to the sphere, and from there to the light.
+template <int kSegments>
+HWY_INLINE void Segment(const PathState& s, size_t i, int segment, Vec3& o, Vec3& dir) {
+  const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i);
+  o = ShadowOrigin(s, i, l);
+  dir = l;
+  if (kSegments == 1 || segment == 0) return;
+  o = Add(o, l);
+  dir = LoadVec3(s.m_x, s.m_y, s.m_z, i);
+}
+
+// What the spheres of connections reflect of each channel.
+HWY_INLINE Vec3 ViaReflectance(const Plan& plan, const PathState& s, size_t i) {
+  const VU via = hn::Load(DU(), s.via + i);
+  Vec3 reflectance = SplatVec3(plan.connected_spheres[0].reflectance);
+  for (uint32_t k = 1; k < plan.connected_spheres.size(); ++k) {
+    const MF by = hn::RebindMask(DF(), hn::Eq(via, hn::Set(DU(), k)));
+    reflectance = IfThenElse(by, SplatVec3(plan.connected_spheres[k].reflectance), reflectance);
+  }
+  return reflectance;
+}
+
 HWY_INLINE void AddLight(const PathState& s, size_t i, MF lit, const Vec3& c) {
   StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), IfThenElseZero(lit, c)), s.L_r, s.L_g, s.L_b, i);
 }
 
+template <int kSegments>
 void OccludeFlat(const Plan& plan, const PathState& s, Range range) {
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
     const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
-    const MF wanted = IsWanted(c);
-    if (hn::AllFalse(DF(), wanted)) continue;
-    const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i);
-    const MF blocked = AnyFlatHit(plan, ShadowOrigin(s, i, l), l, wanted);
-    AddLight(s, i, hn::AndNot(blocked, wanted), c);
+    MF open = IsWanted(c);
+    for (int segment = 0; segment < kSegments && !hn::AllFalse(DF(), open); ++segment) {
+      Vec3 o, dir;
+      Segment<kSegments>(s, i, segment, o, dir);
+      open = hn::AndNot(AnyFlatHit(plan, o, dir, open), open);
+    }
+    AddLight(s, i, open, kSegments == 1 ? c : Mul(c, ViaReflectance(plan, s, i)));
   }
 }
 
@@ -82,6 +107,7 @@ HWY_NOINLINE void WalkAnySphere(const Plan& plan, const ShadowList& rays, float*
   Flight<AnySphere>(plan.sphere_tree, AnySphere(plan, blocked)).Walk(rays);
 }
 
+template <int kSegments>
 void OccludeTrees(const Plan& plan, const PathState& s, Range range) {
   const DF d;
   const VF one = Splat(1.0f);
@@ -89,29 +115,38 @@ void OccludeTrees(const Plan& plan, const PathState& s, Range range) {
   HWY_ALIGN float blocked[kShadowBatch];
   for (size_t begin = range.begin; begin < range.end; begin += kShadowBatch) {
     const size_t end = std::min<size_t>(range.end, begin + kShadowBatch);
-    for (size_t i = begin; i < end; i += hn::Lanes(d)) {
-      const Vec3 l = LoadVec3(s.l_x, s.l_y, s.l_z, i), o = ShadowOrigin(s, i, l);
-      const MF wanted = IsWanted(LoadVec3(s.c_r, s.c_g, s.c_b, i));
-      const MF open = hn::AndNot(AnyFlatHit(plan, o, l, wanted), wanted);
-      hn::Store(hn::IfThenZeroElse(open, one), d, blocked + (i - begin));
-      triangle_rays.Add(plan.triangle_tree, i - begin, o, l, one, open);
-      sphere_rays.Add(plan.sphere_tree, i - begin, o, l, one, open);
+    for (int segment = 0; segment < kSegments; ++segment) {
+      for (size_t i = begin; i < end; i += hn::Lanes(d)) {
+        Vec3 o, dir;
+        Segment<kSegments>(s, i, segment, o, dir);
+        MF wanted = IsWanted(LoadVec3(s.c_r, s.c_g, s.c_b, i));
+        if (segment > 0) wanted = hn::And(wanted, hn::Eq(hn::Load(d, blocked + (i - begin)), hn::Zero(d)));
+        const MF open = hn::AndNot(AnyFlatHit(plan, o, dir, wanted), wanted);
+        hn::Store(hn::IfThenZeroElse(open, one), d, blocked + (i - begin));
+        triangle_rays.Add(plan.triangle_tree, i - begin, o, dir, one, open);
+        sphere_rays.Add(plan.sphere_tree, i - begin, o, dir, one, open);
+      }
+      if (triangle_rays.size() > 0) WalkAnyTriangle(plan, triangle_rays, blocked);
+      if (sphere_rays.size() > 0) WalkAnySphere(plan, sphere_rays, blocked);
+      triangle_rays.clear();
+      sphere_rays.clear();
     }
-    if (triangle_rays.size() > 0) WalkAnyTriangle(plan, triangle_rays, blocked);
-    if (sphere_rays.size() > 0) WalkAnySphere(plan, sphere_rays, blocked);
-    triangle_rays.clear();
-    sphere_rays.clear();
     for (size_t i = begin; i < end; i += hn::Lanes(d)) {
       const MF lit = hn::Eq(hn::Load(d, blocked + (i - begin)), hn::Zero(d));
-      AddLight(s, i, lit, LoadVec3(s.c_r, s.c_g, s.c_b, i));
+      const Vec3 c = LoadVec3(s.c_r, s.c_g, s.c_b, i);
+      AddLight(s, i, lit, kSegments == 1 ? c : Mul(c, ViaReflectance(plan, s, i)));
     }
   }
 }
 
-void Occlude(const Plan& plan, const PathState& s, Range range) {
+template <int kSegments>
+void OccludeSegments(const Plan& plan, const PathState& s, Range range) {
   const bool flat = plan.triangle_tree.nodes.empty() && plan.sphere_tree.nodes.empty();
-  (flat ? OccludeFlat : OccludeTrees)(plan, s, range);
+  (flat ? OccludeFlat<kSegments> : OccludeTrees<kSegments>)(plan, s, range);
 }
+
+void Occlude(const Plan& plan, const PathState& s, Range range) { OccludeSegments<1>(plan, s, range); }
+void OccludeConnection(const Plan& plan, const PathState& s, Range range) { OccludeSegments<2>(plan, s, range); }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
@@ -121,5 +156,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace lanewise {
 LANEWISE_KERNEL(Occlude, occlude);
+LANEWISE_KERNEL(OccludeConnection, occlude_connection);
 }  // namespace lanewise
 #endif

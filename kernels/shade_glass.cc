@@ -44,7 +44,7 @@ void ShadeGlass(const Plan& plan, const PathState& s, Range range) {
     StoreVec3(Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), weight), s.beta_r, s.beta_g, s.beta_b, i);
     StoreVec3(o, s.o_x, s.o_y, s.o_z, i);
     StoreVec3(wi, s.d_x, s.d_y, s.d_z, i);
-    hn::Store(hn::Zero(df), df, s.pdf + i);
+    hn::Store(PdfAfterDelta(plan, s, i, hn::AndNot(inside, reflects)), df, s.pdf + i);
   }
 }
 

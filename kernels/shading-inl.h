@@ -7,7 +7,10 @@
 #define LANEWISE_KERNELS_SHADING_INL_H_
 #endif
 
+#include <limits>
+
 #include "core/plan.h"
+#include "core/plan_connections.h"
 #include "kernels/math-inl.h"
 #include "kernels/records-inl.h"
 #include "kernels/simd-inl.h"
@@ -38,13 +41,16 @@ struct LaneMaterials : LaneRecords {
 struct LightTerms {
   Vec3 radiance;  // of the light; with -H it is not known yet, and 1 stands for it
   VF samples;
-  VF mis;  // 1: weigh against the material's own density, 0: do not
+  VF mis;       // 1: weigh against the material's own density, 0: do not
+  VF most_pdf;  // directions of which the material's own density is larger are not for light samples
 
   explicit LightTerms(const Plan& plan, const Step& step)
       : radiance{Splat(1.0f), Splat(1.0f), Splat(1.0f)},
         samples(Splat(static_cast<float>(plan.settings.light_samples))),
-        mis(Splat(plan.settings.direct == Direct::kMis ? 1.0f : 0.0f)) {
+        mis(Splat(plan.settings.direct == Direct::kMis ? 1.0f : 0.0f)),
+        most_pdf(Splat(std::numeric_limits<float>::infinity())) {
     if (plan.settings.direct != Direct::kHemisphere) radiance = SplatVec3(plan.lights[step.light].radiance);
+    if (step.connection) mis = hn::Zero(DF()), most_pdf = Splat(kMostConnectedPdf);
   }
 
   // w / (n l_pdf) with the power heuristic's w = (n l_pdf)^2 / ((n l_pdf)^2 + bsdf_pdf^2), by ratios, so that no square
@@ -52,9 +58,24 @@ struct LightTerms {
   HWY_INLINE VF Weight(VF l_pdf, VF bsdf_pdf) const {
     const VF n_pdf = hn::Mul(samples, l_pdf);
     const VF ratio = hn::Mul(mis, hn::Min(hn::Div(bsdf_pdf, n_pdf), Splat(1e18f)));
-    return hn::Div(Splat(1.0f), hn::Mul(n_pdf, hn::MulAdd(ratio, ratio, Splat(1.0f))));
+    const VF weight = hn::Div(Splat(1.0f), hn::Mul(n_pdf, hn::MulAdd(ratio, ratio, Splat(1.0f))));
+    return hn::IfThenElseZero(hn::Le(bsdf_pdf, most_pdf), weight);
   }
 };
+
+// What pdf becomes after a delta lobe: kConnected where it is the reflection, seen from outside, of a sphere by way of which
+// the vertex before has been connected to the lights, and else 0.
+HWY_INLINE VF PdfAfterDelta(const Plan& plan, const PathState& s, size_t i, MF reflects_outside) {
+  const DF d;
+  const DI di;
+  const VF zero = hn::Zero(d);
+  if (!connects(plan)) return zero;
+  const VF pdf = hn::Load(d, s.pdf + i);
+  const VI prim = hn::BitCast(di, hn::Load(DU(), s.prim + i));
+  const MF of_sphere = hn::RebindMask(d, hn::Gt(prim, hn::Set(di, static_cast<int32_t>(plan.triangles) - 1)));
+  const MF counted = hn::And(hn::Gt(pdf, zero), hn::Le(pdf, Splat(kMostConnectedPdf)));
+  return hn::IfThenElseZero(hn::And(hn::And(reflects_outside, of_sphere), counted), Splat(kConnected));
+}
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

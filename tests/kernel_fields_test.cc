@@ -132,6 +132,8 @@ TEST_CASE("kernel fields: kernels read and write what kernels.h lists, and all o
     const KernelFields& listed = stage_fields(stage_of(kernel));
     std::set<std::string> read, written;
     for (const Plan& plan : plans) {
+      // Connections are not tried where there are none.
+      if (kernel_name.find("connect") != std::string::npos && plan.connected_spheres.empty()) continue;
       Trial trial(plan, kernel);
       const Words before = trial.words(), after = trial.run("");
       for (size_t f = 0; f < kFields; ++f) {

@@ -93,7 +93,7 @@ TEST_CASE("profile: bounces add up, and each gets what the one before left") {
   CHECK(came == 0);
   CHECK(profile.total(Stage::kRetire).paths == profile.samples);
   CHECK(bounce_rays == profile.bounce_rays);
-  CHECK(profile.total(Stage::kOcclude).rays == profile.shadow_rays);
+  CHECK(profile.total(Stage::kOcclude).rays + profile.total(Stage::kOccludeConnection).rays == profile.shadow_rays);
   CHECK(profile.shadow_rays > 0);
   CHECK(result.logs[0].empty());
 }

@@ -94,6 +94,8 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
       {{"mis", Direct::kMis}, {"light", Direct::kLight}, {"bsdf", Direct::kBsdf}, {"hemisphere", Direct::kHemisphere}},
       "How direct light is sampled");
   app.add_flag("-H,--hemisphere", o.hemisphere, "Short for --direct hemisphere");
+  add_choice<bool>(app, "--connect", o.settings.connect, {{"on", true}, {"off", false}},
+                   "Samples of lights by way of mirror and glass spheres, where the plan has few");
   add_choice<BsdfSampling>(
       app, "--bsdf-sampling", o.settings.bsdf_sampling,
       {{"vndf", BsdfSampling::kVndf}, {"ndf", BsdfSampling::kNdf}, {"cosine", BsdfSampling::kCosine}},

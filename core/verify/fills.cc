@@ -168,6 +168,7 @@ void fill_emitter_hit(const Plan& plan, Rng& rng, Path<float>& p) {
   set_d(p, d);
   p.t = static_cast<float>(t);
   p.bin = kEmitter;
+  if (rng() % 8 == 0) p.pdf = kConnected;
 }
 
 void fill_shading_point(const Plan& plan, Rng& rng, Path<float>& p) {
@@ -179,6 +180,13 @@ void fill_shading_point(const Plan& plan, Rng& rng, Path<float>& p) {
     const dvec3 s = glm::normalize(dvec3(p.s_x, p.s_y, p.s_z));
     set_d(p, near_or_grazing(rng, s));
   }
+}
+
+// No point of a mirror or glass: of a sphere that is connected, it would be on the edge of seeing anything in it.
+void fill_rough_point(const Plan& plan, Rng& rng, Path<float>& p) {
+  do {
+    fill_shading_point(plan, rng, p);
+  } while (plan.prim_bin[p.prim] >= kRoughBins);
 }
 
 void fill_light_sample(const Plan& plan, Rng& rng, Path<float>& p) {
@@ -215,6 +223,15 @@ void fill_shadow_ray(const Plan& plan, Rng& rng, Path<float>& p) {
     set_l(p, (0.5 + unit(rng)) * (hard_target(plan, rng, o) - o));
   }
   if (rng() % 8 == 0) p.c_r = p.c_g = p.c_b = 0;
+}
+
+void fill_connection(const Plan& plan, Rng& rng, Path<float>& p) {
+  fill_shadow_ray(plan, rng, p);
+  const dvec3 o(p.o_x, p.o_y, p.o_z);
+  const dvec3 l(p.l_x, p.l_y, p.l_z), between = rng() % 2 ? 0.5 * l : l;
+  set_l(p, between);
+  set(p.m_x, p.m_y, p.m_z, (0.5 + unit(rng)) * (hard_target(plan, rng, o + between) - o - between));
+  if (!plan.connected_spheres.empty()) p.via = static_cast<uint32_t>(rng() % plan.connected_spheres.size());
 }
 
 void fill_throughput(const Plan& plan, Rng& rng, Path<float>& p) {

@@ -14,8 +14,10 @@ void fill_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before i
 void fill_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before surface
 void fill_emitter_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);
 void fill_shading_point(const Plan& plan, std::mt19937& rng, Path<float>& p);  // after surface, of any material
+void fill_rough_point(const Plan& plan, std::mt19937& rng, Path<float>& p);    // before connect_sphere
 void fill_light_sample(const Plan& plan, std::mt19937& rng, Path<float>& p);   // before light_<material>
 void fill_shadow_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);     // before occlude and gather_emission
+void fill_connection(const Plan& plan, std::mt19937& rng, Path<float>& p);     // before occlude_connection
 void fill_throughput(const Plan& plan, std::mt19937& rng, Path<float>& p);     // before roulette
 
 // Gives the path another material: that of a random prim of the bin. What shading reads of a path does not depend on where

@@ -35,4 +35,13 @@ void occlude(const Plan& plan, Path<T>& p) {
   if (!any_hit(plan, o, l)) LANEWISE_SET_RGB(p, L, LANEWISE_RGB(p, L) + c);
 }
 
+template <class T>
+void occlude_connection(const Plan& plan, Path<T>& p) {
+  const Vec3<T> c = LANEWISE_RGB(p, c), l = LANEWISE_VEC3(p, l), m = LANEWISE_VEC3(p, m);
+  if (c == Vec3<T>(0)) return;
+  const Vec3<T> o = offset_origin(LANEWISE_VEC3(p, o), LANEWISE_VEC3(p, n), p.err, l);
+  if (any_hit(plan, o, l) || any_hit(plan, o + l, m)) return;
+  LANEWISE_SET_RGB(p, L, LANEWISE_RGB(p, L) + c * vec3<T>(plan.connected_spheres[p.via].reflectance));
+}
+
 }  // namespace lanewise::reference

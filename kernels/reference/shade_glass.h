@@ -17,10 +17,10 @@ void shade_glass(const Plan& plan, Path<T>& p) {
   const Dielectric<T> fresnel = fresnel_dielectric(plan.settings.fresnel, c, n_i, n_t);
   const T eta = n_i / n_t;
   if (draw_random(plan, p, kSetChoice).u[kDrawLobe] < fresnel.reflectance) {
-    leave(p, glm::normalize(d + 2 * c * normal), vec3<T>(material.reflectance), T(0));
+    leave(p, glm::normalize(d + 2 * c * normal), vec3<T>(material.reflectance), pdf_after_delta(plan, p, !inside));
   } else {
     leave(p, glm::normalize(eta * d + (eta * c - fresnel.cos_t) * normal), eta * eta * vec3<T>(material.transmittance),
-          T(0));
+          pdf_after_delta(plan, p, false));
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/plan.h"
+#include "core/plan_connections.h"
 #include "kernels/reference/vec3.h"
 
 namespace lanewise::reference {
@@ -16,14 +17,23 @@ const PlanMaterial& material_at(const Plan& plan, const Path<T>& p) {
   return plan.materials[plan.prim_material[p.prim]];
 }
 
-// Radiance of the light times w / (n l_pdf), w the power heuristic's weight against bsdf_pdf; needs l_pdf > 0.
+// Radiance of the light times w / (n l_pdf), w the power heuristic's weight against bsdf_pdf; needs l_pdf > 0. Of a
+// connection w is 1, or 0 where directions are left to BSDF sampling.
 template <class T>
 Vec3<T> light_weight(const Plan& plan, const Path<T>& p, T bsdf_pdf) {
   const Direct direct = plan.settings.direct;
   const T n_pdf = static_cast<T>(plan.settings.light_samples) * p.l_pdf;
-  const T ratio = direct == Direct::kMis ? bsdf_pdf / n_pdf : 0;
   const Vec3<T> radiance = direct == Direct::kHemisphere ? Vec3<T>(1) : vec3<T>(plan.lights[p.step.light].radiance);
+  if (p.step.connection) return bsdf_pdf <= T(kMostConnectedPdf) ? radiance / n_pdf : Vec3<T>(0);
+  const T ratio = direct == Direct::kMis ? bsdf_pdf / n_pdf : 0;
   return radiance / (n_pdf * (1 + ratio * ratio));
+}
+
+// What pdf becomes after a delta lobe: see kConnected. reflects_outside: the lobe is the reflection, seen from outside.
+template <class T>
+T pdf_after_delta(const Plan& plan, const Path<T>& p, bool reflects_outside) {
+  const bool counted = connects(plan) && p.pdf > 0 && p.pdf <= T(kMostConnectedPdf);
+  return counted && reflects_outside && p.prim >= plan.triangles ? T(kConnected) : T(0);
 }
 
 // Sends the path on from the hit point in direction wi.
