@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/probes.h"
@@ -17,7 +18,10 @@ constexpr double kLeastRadiance = 0.01;  // MRSE's
 // perf/results/error_estimate.md.
 constexpr double kLikelyValueError = 0.05;
 
-double luminance_of(const std::array<double, 3>& rgb) { return luminance(rgb[0], rgb[1], rgb[2]); }
+template <class T>
+double luminance_of(const std::array<T, 3>& rgb) {
+  return luminance(rgb[0], rgb[1], rgb[2]);
+}
 
 // The mean over channels of square / (truth + 0.01)^2.
 double relative(const std::array<double, 3>& square, const std::array<double, 3>& truth) {
@@ -53,12 +57,35 @@ Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint3
   return all;
 }
 
-// The factor is that of a ratio, of relative variance `variance`.
-ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double factor, double variance) {
+// Is all the pixel's variance one bright path's, such as few neighbours have met? One sample F among n dark ones has the variance
+// (F / n)^2 of their mean, and lifts it by F / n. (That is what it is off by, too, whatever the other samples are like.)
+bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
+  constexpr double kOutlier = 16, kAlike = 4;
+  double around = 0;
+  std::array<float, 8> variances{};
+  size_t neighbours = 0;
+  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
+    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
+      if (i == x && j == y) continue;
+      const PixelMean& pixel = picture.pixels[size_t{j} * picture.width + i];
+      variances[neighbours++] = pixel.variance;
+      around += luminance_of(pixel.rgb);
+    }
+  }
+  if (neighbours == 0) return false;
+  auto* const median = variances.begin() + neighbours / 2;
+  std::nth_element(variances.begin(), median, variances.begin() + neighbours);
+  if (centre.variance <= kOutlier * *median) return false;
+  const double lift = luminance_of(centre.rgb) - around / static_cast<double>(neighbours), lift2 = lift * lift;
+  return lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
+}
+
+// variance: relative, of what the terms have been multiplied by.
+ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double variance) {
   const double n = static_cast<double>(picture.pixels.size());
   // Both the picture's own error and what is known of it vary.
   variance += 2 * all.variance(n) + kLikelyValueError * kLikelyValueError;
-  const double value = factor * all.terms / n, spread = std::exp(1.96 * std::sqrt(variance));
+  const double value = all.terms / n, spread = std::exp(1.96 * std::sqrt(variance));
   return {value, value / spread, value * spread};
 }
 
@@ -88,30 +115,41 @@ std::array<double, 3> likely_value(const MeanPicture& picture, uint32_t x, uint3
 }
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
-  return with_interval(picture, sum_relative(picture, squares, threads), 1, 0);
+  return with_interval(picture, sum_relative(picture, squares, threads), 0);
 }
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, uint32_t threads) {
-  const auto variances = [&](size_t i) {
-    const double v = picture.pixels[i].variance;
-    return std::array<double, 3>{v, v, v};
+  const auto place = [&](size_t i) {
+    return std::pair(static_cast<uint32_t>(i % picture.width), static_cast<uint32_t>(i / picture.width));
   };
-  const Sums all = sum_relative(picture, variances, threads);
+  const auto sum_variances = [&](bool fireflies) {
+    return sum_relative(
+        picture,
+        [&](size_t i) {
+          const auto [x, y] = place(i);
+          const double v = picture.pixels[i].variance;
+          if (is_firefly(picture, x, y, picture.pixels[i]) != fireflies) return std::array<double, 3>{};
+          return std::array<double, 3>{v, v, v};
+        },
+        threads);
+  };
+  const Sums calm = sum_variances(false), fireflies = sum_variances(true);
 
   // The ratio of what squared differences say to what variances say (Cochran, Sampling Techniques, 1977, ch. 6): bright paths
-  // that chance has dealt to the probes are in both.
+  // that chance has dealt to the probes are in both. Fireflies are left out, whose ratio is 1.
   std::vector<std::array<double, 2>> terms;  // of each probe: by difference, by variance
   double by_difference = 0, by_variance = 0;
   for (size_t k = 0; k < probes.pixels().size(); ++k) {
     const size_t i = probes.place(k);
     const PixelMean &first = picture.pixels[i], second = probes.second(k);
+    const auto [x, y] = place(i);
+    if (is_firefly(picture, x, y, first) || is_firefly(picture, x, y, second)) continue;
     const double v = double{first.variance} + second.variance;
     std::array<double, 3> difference2{};
     for (size_t c = 0; c < 3; ++c) difference2[c] = std::pow(double{first.rgb[c]} - second.rgb[c], 2);
     std::array<double, 2> term{};
     for (const PixelMean& one : {first, second}) {
-      const std::array<double, 3> truth = likely_value(picture, static_cast<uint32_t>(i % picture.width),
-                                                       static_cast<uint32_t>(i / picture.width), one);
+      const std::array<double, 3> truth = likely_value(picture, x, y, one);
       term[0] += relative(difference2, truth);
       term[1] += relative({v, v, v}, truth);
     }
@@ -119,11 +157,17 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, u
     by_difference += term[0];
     by_variance += term[1];
   }
-  if (by_variance == 0 || by_difference == 0) return with_interval(picture, all, 1, 0);
-  const double n = static_cast<double>(terms.size()), factor = by_difference / by_variance;
-  double residues = 0;
-  for (const auto& [difference, variance] : terms) residues += std::pow(difference - factor * variance, 2);
-  return with_interval(picture, all, factor, n / std::max(n - 1, 1.0) * residues / (by_difference * by_difference));
+  double factor = 1, variance = 0;
+  if (by_variance > 0 && by_difference > 0) {
+    const double n = static_cast<double>(terms.size());
+    factor = by_difference / by_variance;
+    double residues = 0;
+    for (const auto& [d, v] : terms) residues += std::pow(d - factor * v, 2);
+    variance = n / std::max(n - 1, 1.0) * residues / (by_difference * by_difference);
+  }
+  const Sums all{factor * calm.terms + fireflies.terms, factor * factor * calm.squares + fireflies.squares};
+  const double share = all.terms > 0 ? factor * calm.terms / all.terms : 0;
+  return with_interval(picture, all, share * share * variance);
 }
 
 }  // namespace lanewise

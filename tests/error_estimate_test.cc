@@ -86,6 +86,14 @@ TEST_CASE("error estimate: what independent and low-discrepancy samples are off 
   }
 }
 
+TEST_CASE("error estimate: a firefly's error is known from its pixel alone, whatever the other samples' ratio") {
+  const test::MadeUpDraw draw{.stratified = true, .firefly = 40 * 96 + 51};  // no probe
+  const Exposure got = expose(picture(64), 1, draw, nullptr);
+  const double truth = measured(got, draw);
+  CHECK(truth > 1);
+  CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.1));
+}
+
 TEST_CASE("error estimate: nothing is said of one sample, of -a, or where it is not asked for") {
   const test::MadeUpDraw draw;
   CHECK(!expose(picture(1), 1, draw, nullptr).error);
