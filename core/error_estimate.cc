@@ -47,7 +47,9 @@ Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint3
     const auto y = static_cast<uint32_t>(row);
     for (uint32_t x = 0; x < picture.width; ++x) {
       const size_t i = row * picture.width + x;
-      rows[row].add(relative(squares(i), likely_value(picture, x, y, picture.pixels[i])));
+      const std::array<double, 3> square = squares(i);
+      if (square == std::array<double, 3>{}) continue;
+      rows[row].add(relative(square, likely_value(picture, x, y, picture.pixels[i])));
     }
     return uint64_t{0};
   };
