@@ -30,7 +30,7 @@ class Rounds {
       const double begin = clock_();
       const bool whole = draw_tiles(count);
       done_ += count;
-      if (!whole) break;
+      if (!whole || (timed() && drawing_time_left() <= 0)) break;
       draw_probes(count);
       seconds_per_sample_ = (clock_() - begin) / count;
       if (done_ < settings_.spp && (progress_ || timed())) close();
