@@ -98,12 +98,16 @@ TEST_CASE("profile command: the JSON adds up") {
     const auto lengths = stage["paths_per_call"].get<std::vector<uint32_t>>();
     CHECK(lengths.size() == 5);
     CHECK(std::is_sorted(lengths.begin(), lengths.end()));
-    CHECK(stage.contains("rays_per_second") == (stage["name"] == "intersect" || stage["name"] == "occlude"));
+    const bool traces =
+        stage["name"] == "intersect" || stage["name"] == "occlude" || stage["name"] == "occlude_connection";
+    CHECK(stage.contains("rays_per_second") == traces);
   }
   const json& intersect = stage_of(report, "intersect");
   CHECK(intersect["bounces"].size() == 3 + 1);
   CHECK(intersect["rays"] == report["rays"]["camera"].get<uint64_t>() + report["rays"]["bounce"].get<uint64_t>());
-  CHECK(stage_of(report, "occlude")["rays"] == report["rays"]["shadow"]);
+  const uint64_t straight = stage_of(report, "occlude")["rays"],
+                 by_spheres = stage_of(report, "occlude_connection")["rays"];
+  CHECK(straight + by_spheres == report["rays"]["shadow"]);
   REQUIRE(report["scaling"].size() == 2);
   CHECK(report["scaling"][0]["threads"] == 1);
   CHECK(report["scaling"][1]["threads"] == 2);
