@@ -23,6 +23,7 @@ import study  # noqa: E402
 from study import plt  # noqa: E402
 
 WIDTH, HEIGHT, DEPTH, THREADS = 480, 360, 5, 2
+SAME_ESTIMATOR = ['--sampler', 'random', '--connect', 'off']  # as the peers: perf/chart.py is for what ours is worth
 FASTEST = 'mitsuba llvm_ad_rgb'
 LABELS = {FASTEST: 'Mitsuba 3 llvm_ad_rgb', 'mitsuba scalar_rgb': 'Mitsuba 3 scalar_rgb', 'cycles': 'Cycles'}
 AIMS = {'CBspheres': 10, 'CBbunny_microfacet_cu': 3, 'CBdragon_microfacet_au': 3}
@@ -47,7 +48,7 @@ class Lanewise:
 
     def render(self, samples, seed):
         picture, stats = lanewise.render(self.scene, '-r', WIDTH, HEIGHT, '-s', samples, '-m', DEPTH, '-t', THREADS,
-                                         '--normals', 'flat', '--seed', seed, camera=self.camera)
+                                         '--normals', 'flat', '--seed', seed, *SAME_ESTIMATOR, camera=self.camera)
         return stats['seconds']['render'], picture
 
 
