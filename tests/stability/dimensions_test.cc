@@ -141,10 +141,12 @@ void check_independent(Sampler sampler) {
   const double level = test::sidak(0.01, tests);
   const double bound = quantile(complement(boost::math::normal(), level / 2)) / std::sqrt(double(kSamples));
   double worst_correlation = 0, worst_p = 1;
+  // Pairs of short sequences fill cells less evenly than chance does; over several sequences that goes away.
+  const bool enough = sampler == Sampler::kRandom || kSamples > 1 << kSequenceBits;
   const auto check = [&](const std::vector<float>& a, const std::vector<float>& b) {
     const double r = std::abs(correlation(a, b)), p = uniform_p(a, b);
     CHECK(r < bound);
-    CHECK(p > level);
+    if (enough) CHECK(p > level);
     worst_correlation = std::max(worst_correlation, r);
     worst_p = std::min(worst_p, p);
   };
