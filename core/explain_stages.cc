@@ -53,7 +53,7 @@ std::string why_no_connections(const Plan& plan) {
   if (const std::string why = why_no_light_samples(plan); !why.empty()) return why;
   if (plan.settings.direct == Direct::kHemisphere) return "--direct hemisphere";
   if (!plan.settings.connect) return "--connect off";
-  if (plan.connected_spheres.empty()) {
+  if (!connects(plan)) {
     return has_delta_sphere(plan)
                ? "only for up to " + count_of(kMaxConnectedLights, "light") + " and " +
                      count_of(kMaxConnectedSpheres, "mirror or glass sphere") + ", in places of their own"

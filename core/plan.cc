@@ -246,7 +246,7 @@ class Planner {
 
   // Every light sample of a vertex draws a set of its own.
   void check_random_sets() const {
-    const uint64_t lights = plan_.lights.size() * (plan_.connected_spheres.empty() ? 1 : 2);
+    const uint64_t lights = plan_.lights.size() * (connects(plan_) ? 2 : 1);
     const uint64_t sets = lights * plan_.settings.light_samples;
     if (sets > kSetsPerBounce - kSetLight) {
       throw Error(scene_.path + ": " + std::to_string(plan_.lights.size()) + " lights with " +

@@ -47,6 +47,9 @@ ConnectedSphere connected(const Plan& plan, uint32_t prim) {
 }  // namespace
 
 void connect_spheres(Plan& plan) {
+  const Settings& settings = plan.settings;
+  const bool takes_light_samples = settings.direct == Direct::kMis || settings.direct == Direct::kLight;
+  if (!settings.connect || !takes_light_samples) return;
   std::vector<ConnectedSphere> spheres;
   for (uint32_t prim = plan.triangles; prim < plan.triangles + plan.spheres; ++prim) {
     if (plan.prim_bin[prim] != kMirror && plan.prim_bin[prim] != kGlass) continue;
@@ -55,12 +58,6 @@ void connect_spheres(Plan& plan) {
     if (sphere.importance > 0) spheres.push_back(sphere);
   }
   if (plan.lights.size() <= kMaxConnectedLights) plan.connected_spheres = std::move(spheres);
-}
-
-bool connects(const Plan& plan) {
-  const Settings& settings = plan.settings;
-  const bool takes_light_samples = settings.direct == Direct::kMis || settings.direct == Direct::kLight;
-  return settings.connect && takes_light_samples && !plan.connected_spheres.empty();
 }
 
 }  // namespace lanewise

@@ -21,11 +21,10 @@ constexpr uint32_t kMaxConnectedLights = 4;
 // weights are 0 and 1 then, which is multiple importance sampling like any other (Veach 1997, sec. 9.2).
 constexpr float kMostConnectedPdf = 100;
 
-// Fills plan.connected_spheres: with all mirror and glass spheres, or none.
+// Fills plan.connected_spheres: with all mirror and glass spheres, or none, as where the settings leave no connections.
 void connect_spheres(Plan& plan);
 
-// Whether a render with the plan's settings connects anything.
-bool connects(const Plan& plan);
+inline bool connects(const Plan& plan) { return !plan.connected_spheres.empty(); }
 
 // Whether it does so from vertices with this many scattering events behind them: two more must be allowed.
 inline bool connects_at(const Plan& plan, uint32_t bounce) {

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "core/scene.h"
 #include "core/verify/test_scene.h"
@@ -158,15 +159,16 @@ TEST_CASE("connect_sphere: which spheres the plan connects") {
 }
 
 TEST_CASE("connect_sphere: only with light samples, and where two more scattering events may follow") {
-  Plan plan = make_plan(test::test_box(), {});
-  CHECK(connects_at(plan, 3));
-  CHECK(!connects_at(plan, 4));
-  plan.settings.connect = false;
-  CHECK(!connects_at(plan, 0));
-  plan.settings.connect = true;
+  Settings settings;
+  const auto at = [&](uint32_t bounce) { return connects_at(make_plan(test::test_box(), settings), bounce); };
+  CHECK(at(3));
+  CHECK(!at(4));
+  settings.connect = false;
+  CHECK(!at(0));
+  settings.connect = true;
   for (const Direct direct : {Direct::kBsdf, Direct::kHemisphere}) {
-    plan.settings.direct = direct;
-    CHECK(!connects_at(plan, 0));
+    settings.direct = direct;
+    CHECK(!at(0));
   }
 }
 
@@ -194,9 +196,9 @@ TEST_CASE("connect_sphere: what it covers is kConnected behind the sphere, and e
     CHECK(pdf_behind(bin, 2 * kMostConnectedPdf, true) == 0);
     CHECK(pdf_behind(bin, 0, true) == 0);
     CHECK(pdf_behind(bin, kConnected, true) == 0);
-    plan.settings.connect = false;
+    const std::vector<ConnectedSphere> spheres = std::exchange(plan.connected_spheres, {});
     CHECK(pdf_behind(bin, 0.3f, true) == 0);
-    plan.settings.connect = true;
+    plan.connected_spheres = spheres;
   }
 }
 

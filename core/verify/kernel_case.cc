@@ -32,17 +32,13 @@ void generate_batch(const Plan& plan, const PathState& s, Range range) {
 }
 
 // Nothing on plans without connections.
-void connect_sphere_if_any(const Plan& plan, const PathState& s, Range range) {
-  if (!plan.connected_spheres.empty()) connect_sphere(plan, s, range);
+template <Kernel* kKernel>
+void if_connected(const Plan& plan, const PathState& s, Range range) {
+  if (connects(plan)) kKernel(plan, s, range);
 }
-void connect_sphere_if_any_twin(const Plan& plan, Path<double>& p) {
-  if (!plan.connected_spheres.empty()) reference::connect_sphere(plan, p);
-}
-void occlude_connection_if_any(const Plan& plan, const PathState& s, Range range) {
-  if (!plan.connected_spheres.empty()) occlude_connection(plan, s, range);
-}
-void occlude_connection_if_any_twin(const Plan& plan, Path<double>& p) {
-  if (!plan.connected_spheres.empty()) reference::occlude_connection(plan, p);
+template <auto kTwin>
+void twin_if_connected(const Plan& plan, Path<double>& p) {
+  if (connects(plan)) kTwin(plan, p);
 }
 
 template <Bin kBin, auto kFill>
@@ -63,8 +59,8 @@ const KernelCase kCases[] = {
     {"sample_light", sample_light, twin::sample_light<double>, kSampleLightBounds, "o n", fill_shading_point},
     {"sample_hemisphere", sample_hemisphere, twin::sample_hemisphere<double>, kSampleHemisphereBounds, "d s",
      fill_shading_point},
-    {"connect_sphere", connect_sphere_if_any, connect_sphere_if_any_twin, kConnectSphereBounds, "o n",
-     fill_rough_point},
+    {"connect_sphere", if_connected<connect_sphere>, twin_if_connected<twin::connect_sphere<double>>,
+     kConnectSphereBounds, "o n", fill_rough_point},
     {"light_diffuse", light_diffuse, twin::light_diffuse<double>, kLightDiffuseBounds, "d s l l_pdf",
      fill_of_bin<kDiffuse, kLight>},
     {"shade_diffuse", shade_diffuse, twin::shade_diffuse<double>, kShadeDiffuseBounds, "o d n s",
@@ -77,8 +73,8 @@ const KernelCase kCases[] = {
      fill_of_bin<kMirror, kShade>},
     {"shade_glass", shade_glass, twin::shade_glass<double>, kShadeGlassBounds, "o d n s", fill_of_bin<kGlass, kShade>},
     {"occlude", occlude, twin::occlude<double>, kOccludeBounds, "o n l", fill_shadow_ray},
-    {"occlude_connection", occlude_connection_if_any, occlude_connection_if_any_twin, kOccludeConnectionBounds,
-     "o n l m", fill_connection},
+    {"occlude_connection", if_connected<occlude_connection>, twin_if_connected<twin::occlude_connection<double>>,
+     kOccludeConnectionBounds, "o n l m", fill_connection},
     {"gather_emission", gather_emission, twin::gather_emission<double>, kGatherEmissionBounds, "o n l",
      fill_shadow_ray},
     {"roulette", roulette, twin::roulette<double>, kRouletteBounds, "beta", fill_throughput},

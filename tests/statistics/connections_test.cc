@@ -53,7 +53,7 @@ struct Difference {
 Difference compare(Plan plan) {
   REQUIRE(!plan.connected_spheres.empty());
   const std::vector<Image> connected = test::independent_renders(plan, test::simd, 1, kSeeds);
-  plan.settings.connect = false;
+  plan.connected_spheres.clear();
   const std::vector<Image> by_chance = test::independent_renders(plan, test::simd, 1000, kSeeds);
   // Single pixels often have no chance hit at all: blocks do.
   const test::Unpaired pictures = test::compare_unpaired(connected, by_chance, 12);
@@ -116,7 +116,7 @@ TEST_CASE("connections: no sphere is connected from where it stands around the v
   scene.spheres = {{"around", {0, 0, 0.75}, 10, test::kMirrorMaterial}};
   Plan plan = plan_of(scene, 3);
   const std::vector<Image> on = test::independent_renders(plan, test::simd, 1, 1);
-  plan.settings.connect = false;
+  plan.connected_spheres.clear();
   CHECK(on[0].rgb == test::independent_renders(plan, test::simd, 1, 1)[0].rgb);
 }
 
