@@ -59,6 +59,16 @@ Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint3
   return all;
 }
 
+// f(pixel) for the up to eight pixels around (x, y).
+template <class F>
+void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
+  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
+    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
+      if (i != x || j != y) f(picture.pixels[size_t{j} * picture.width + i]);
+    }
+  }
+}
+
 // Is all the pixel's variance one bright path's, such as few neighbours have met? One sample F among n dark ones has the variance
 // (F / n)^2 of their mean, and lifts it by F / n. (That is what it is off by, too, whatever the other samples are like.)
 bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
@@ -66,14 +76,10 @@ bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelM
   double around = 0;
   std::array<float, 8> variances{};
   size_t neighbours = 0;
-  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
-    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
-      if (i == x && j == y) continue;
-      const PixelMean& pixel = picture.pixels[size_t{j} * picture.width + i];
-      variances[neighbours++] = pixel.variance;
-      around += luminance_of(pixel.rgb);
-    }
-  }
+  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) {
+    variances[neighbours++] = pixel.variance;
+    around += luminance_of(pixel.rgb);
+  });
   if (neighbours == 0) return false;
   auto* const median = variances.begin() + neighbours / 2;
   std::nth_element(variances.begin(), median, variances.begin() + neighbours);
@@ -97,15 +103,11 @@ std::array<double, 3> likely_value(const MeanPicture& picture, uint32_t x, uint3
   std::array<double, 3> around{}, own{};
   for (size_t c = 0; c < 3; ++c) own[c] = centre.rgb[c];
   double variance = centre.variance, neighbours = 0;
-  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
-    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
-      if (i == x && j == y) continue;
-      const PixelMean& pixel = picture.pixels[size_t{j} * picture.width + i];
-      for (size_t c = 0; c < 3; ++c) around[c] += pixel.rgb[c];
-      variance += pixel.variance;
-      neighbours += 1;
-    }
-  }
+  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) {
+    for (size_t c = 0; c < 3; ++c) around[c] += pixel.rgb[c];
+    variance += pixel.variance;
+    neighbours += 1;
+  });
   if (neighbours == 0) return own;
   for (double& value : around) value /= neighbours;
   // Neither may a pixel that has met no bright path yet pass for calm beside noisy ones.
