@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/plan_connections.h"
+#include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
@@ -29,9 +31,11 @@ constexpr StageTwin kTwins[] = {
     {Stage::kSurface, surface, twin::surface<float>},
     {Stage::kSampleLight, sample_light, twin::sample_light<float>},
     {Stage::kSampleHemisphere, sample_hemisphere, twin::sample_hemisphere<float>},
+    {Stage::kConnectSphere, connect_sphere, twin::connect_sphere<float>},
     {Stage::kLightDiffuse, light_diffuse, twin::light_diffuse<float>},
     {Stage::kLightMicrofacet, light_microfacet, twin::light_microfacet<float>},
     {Stage::kOcclude, occlude, twin::occlude<float>},
+    {Stage::kOccludeConnection, occlude_connection, twin::occlude_connection<float>},
     {Stage::kGatherEmission, gather_emission, twin::gather_emission<float>},
     {Stage::kShadeDiffuse, shade_diffuse, twin::shade_diffuse<float>},
     {Stage::kShadeMicrofacet, shade_microfacet, twin::shade_microfacet<float>},
@@ -47,7 +51,7 @@ void run_twin(const Plan& plan, Stage stage, Path<float>& p) {
 }
 
 // What a path that met bin goes through until the next intersect.
-std::vector<Stage> stages_at(const Plan& plan, uint32_t bin) {
+std::vector<Stage> stages_at(const Plan& plan, uint32_t bin, uint32_t bounce) {
   const bool hemisphere = plan.settings.direct == Direct::kHemisphere;
   std::vector<Stage> stages = {Stage::kSurface};
   for (const ShadeStages& s : plan.shade_stages) {
@@ -55,6 +59,9 @@ std::vector<Stage> stages_at(const Plan& plan, uint32_t bin) {
     if (s.light != Stage::kCount) {
       stages.insert(stages.end(), {hemisphere ? Stage::kSampleHemisphere : Stage::kSampleLight, s.light,
                                    hemisphere ? Stage::kGatherEmission : Stage::kOcclude});
+      if (connects_at(plan, bounce)) {
+        stages.insert(stages.end(), {Stage::kConnectSphere, s.light, Stage::kOccludeConnection});
+      }
     }
     stages.insert(stages.end(), {s.shade, Stage::kRoulette});
   }
@@ -71,9 +78,11 @@ bool trace_to(const Plan& plan, Stage wanted, uint32_t wanted_bounce, Path<float
     if (there && wanted == Stage::kIntersect) return true;
     run_twin(plan, Stage::kIntersect, p);
     if (p.bin >= kSurfaceBins) return there && wanted == Stage::kEmission && p.bin == kEmitter;
-    for (const Stage stage : stages_at(plan, p.bin)) {
+    for (const Stage stage : stages_at(plan, p.bin, bounce)) {
       if (there && stage == wanted) return true;
+      if (stage == Stage::kConnectSphere) p.step.connection = true;
       run_twin(plan, stage, p);
+      if (stage == Stage::kOccludeConnection) p.step.connection = false;
     }
   }
   return false;
