@@ -59,7 +59,7 @@ HWY_INLINE Hash4 Pcg4d(VU pixel, VU sample, uint32_t set, uint64_t seed) {
 HWY_INLINE VU ReverseBits(VU v) {
   const DU d;
 #if HWY_TARGET == HWY_SCALAR
-  return hn::Set(d, reverse_bits(hn::GetLane(v), 32));
+  return hn::Set(d, reverse_bits(hn::GetLane(v)));
 #else
   const hn::Repartition<uint8_t, DU> d8;
   // By nibbles, then the bytes of each lane.
@@ -88,10 +88,8 @@ HWY_INLINE VU Permute(VU x, VU seed) {
 // among.
 HWY_INLINE VU SobolNumber(VU reversed_index, uint32_t dimension) {
   const DU d;
-  constexpr uint32_t kBits = hn::MaxLanes(DU()) >= 16  ? 4
-                             : hn::MaxLanes(DU()) >= 8 ? 3
-                             : hn::MaxLanes(DU()) >= 4 ? 2
-                                                       : 1;
+  constexpr size_t kLookedUp = hn::MaxLanes(DU());  // one lane looks up in memory
+  constexpr uint32_t kBits = kLookedUp == 4 ? 2 : kLookedUp == 8 ? 3 : 4;
   const auto& table = kSobolTables<kBits>[dimension];
   VU number = hn::Zero(d), bits = reversed_index;
   const VU group = hn::Set(d, (1u << kBits) - 1);

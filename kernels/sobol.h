@@ -12,10 +12,12 @@
 
 namespace lanewise {
 
-constexpr uint32_t reverse_bits(uint32_t x, uint32_t bits) {
-  uint32_t reversed = 0;
-  for (uint32_t i = 0; i < bits; ++i) reversed |= (x >> i & 1) << (bits - 1 - i);
-  return reversed;
+constexpr uint32_t reverse_bits(uint32_t x) {
+  x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+  x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+  x = (x >> 4 & 0x0F0F0F0Fu) | (x & 0x0F0F0F0Fu) << 4;
+  x = (x >> 8 & 0x00FF00FFu) | (x & 0x00FF00FFu) << 8;
+  return x >> 16 | x << 16;
 }
 
 using SobolMatrix = std::array<uint32_t, kSequenceBits>;
@@ -37,7 +39,7 @@ constexpr SobolMatrix sobol_matrix(uint32_t dimension) {
   }
   SobolMatrix columns = {};
   for (uint32_t j = 0; j < kSequenceBits; ++j) {
-    columns[j] = reverse_bits(v[kSequenceBits - 1 - j], kSequenceBits);
+    columns[j] = reverse_bits(v[kSequenceBits - 1 - j]) >> (32 - kSequenceBits);
   }
   return columns;
 }

@@ -17,7 +17,7 @@ import study
 from study import plt
 
 AIMS = {'sse4': 3, 'avx2': 5, 'avx512': 8}  # times the twin
-TRACING = ['intersect', 'occlude', 'gather_emission']
+TRACING = ['intersect', 'occlude', 'occlude_connection', 'gather_emission']
 WHY_LOW = {
     'sort': 'moves 20 fields of a path and computes nothing',
     'retire': 'three stores a path to where its slot says; no vector can help before AVX-512 has scatters',

@@ -50,11 +50,14 @@ inline uint32_t permute(uint32_t x, uint32_t seed) {
 inline Hash4 sobol4d(uint32_t pixel, uint32_t sample, uint32_t set, uint64_t seed) {
   const Hash4 seeds = pcg4d(pixel, sample >> kSequenceBits, set, seed);
   const uint32_t shuffle = (seeds.x ^ seeds.z >> 15) + (seeds.y ^ seeds.w << 7);
-  const uint32_t index = permute(reverse_bits(sample << (32 - kSequenceBits), 32), shuffle);
+  const uint32_t index = permute(reverse_bits(sample << (32 - kSequenceBits)), shuffle);
   const auto fraction = [&](uint32_t dimension, uint32_t dimension_seed) {
-    uint32_t number = 0;
-    for (uint32_t j = 0; j < kSequenceBits; ++j) number ^= (index >> j & 1) * kSobol[dimension][j];
-    return reverse_bits(permute(number, dimension_seed), 32);
+    uint32_t number = 0, bits = index;
+    for (const auto& sums : kSobolTables<4>[dimension].sums) {
+      number ^= sums[bits & 15];
+      bits >>= 4;
+    }
+    return reverse_bits(permute(number, dimension_seed));
   };
   return {fraction(0, seeds.x), fraction(1, seeds.y), fraction(2, seeds.z), fraction(3, seeds.w)};
 }
