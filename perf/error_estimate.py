@@ -16,19 +16,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import lanewise
+import picture_error
 import study
 
 SIZE = ['-r', 320, 240]
-
-
-def scenes_of(given):
-    if given is None:
-        given = [lanewise.COURSE] if lanewise.COURSE.is_dir() else lanewise.SHIPPED
-    return [scene for path in given for scene in (sorted(path.glob('*.dae')) if path.is_dir() else [path.resolve()])]
-
-
-def mrse(picture, truth):
-    return float(np.mean((picture.astype(float) - truth)**2 / (truth.astype(float) + 0.01)**2))
 
 
 def predictions(scene, arguments):
@@ -42,7 +33,7 @@ def predictions(scene, arguments):
     for samples in arguments.samples:
         for seed in range(1, arguments.seeds + 1):
             picture, stats = render('-s', samples, '--seed', seed)
-            measured, predicted = mrse(picture, truth) - own, stats['estimated_mrse']
+            measured, predicted = picture_error.mrse(picture, truth) - own, stats['estimated_mrse']
             rows.append({'scene': scene.stem, 'samples': samples, 'seed': seed, 'measured': measured, **predicted,
                          'reference': own})
             print(json.dumps(rows[-1]), flush=True)
@@ -103,7 +94,7 @@ def main():
     parser.add_argument('--reference', type=int, default=2048, help='samples of the reference')
     parser.add_argument('--times', nargs='*', type=float, default=[2, 5, 10], help='budgets in seconds')
     arguments = parser.parse_args()
-    scenes = scenes_of(arguments.scenes)
+    scenes = study.all_scenes_of(arguments.scenes)
     rows = [row for scene in scenes for row in predictions(scene, arguments)]
     lit = {r['scene'] for r in rows}
     ends = [row for scene in scenes if scene.stem in lit for row in endings(scene, arguments)]

@@ -41,6 +41,13 @@ def scenes_of(arguments, shipped=None):
     return [scene for path in given for scene in (in_folder(path) if path.is_dir() else [path.resolve()])]
 
 
+def all_scenes_of(given):
+    """Of files and folders; without any, all of the course's, or else the shipped ones."""
+    if given is None:
+        given = [lanewise.COURSE] if lanewise.COURSE.is_dir() else lanewise.SHIPPED
+    return [scene for path in given for scene in (sorted(path.glob('*.dae')) if path.is_dir() else [path.resolve()])]
+
+
 def view_flags(scene):
     """Those scenes that we ship have cameras of their own."""
     return ['--view', 'file' if scene in lanewise.SHIPPED else 'fit', '--normals', 'flat']
