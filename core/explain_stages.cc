@@ -59,7 +59,7 @@ std::string why_no_connections(const Plan& plan) {
                      count_of(kMaxConnectedSpheres, "mirror or glass sphere") + ", in places of their own"
                : "no mirror or glass sphere";
   }
-  return connects_at(plan, 0) ? "" : "-m 1: no path meets a light behind a rough surface and a sphere";
+  return plan.settings.max_depth >= 2 ? "" : "-m 1: no path meets a light behind a rough surface and a sphere";
 }
 
 std::string why_no_material(const Plan& plan, Bin bin) {
@@ -75,6 +75,17 @@ std::string why_no_light_stage(const Plan& plan, Bin bin) {
 // Why a stage that runs is the way it is.
 std::string why_so(const Plan& plan, Stage stage) {
   const Settings& settings = plan.settings;
+std::string distance_text(double distance) {
+  std::ostringstream text;
+  text << std::setprecision(4) << distance;
+  return text.str();
+}
+
+// With --only-bounce, where alone in a path: `ahead` scattering events before the light is met.
+std::string only_bounce(const Settings& settings, uint32_t ahead) {
+  return settings.only_bounce ? "; only at bounce " + std::to_string(*settings.only_bounce - ahead) : "";
+}
+
   const bool trees = !plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty();
   switch (stage) {
     case Stage::kGenerate:
@@ -90,18 +101,26 @@ std::string why_so(const Plan& plan, Stage stage) {
     case Stage::kSort:
       return count_of(plan.shade_stages.size(), "material") + ", emitters, finished: a contiguous bin each";
     case Stage::kEmission:
-      return "once a wave, over the paths of all bounces that met a light";
+      return settings.only_bounce
+                 ? "once a wave, over the paths that met a light at bounce " + std::to_string(*settings.only_bounce)
+                 : "once a wave, over the paths of all bounces that met a light";
     case Stage::kSurface:
       return plan.prim_normals.empty() ? "flat faces alone: no corner normals to fetch and mix"
                                        : "corner normals, mixed by barycentric weights";
     case Stage::kSampleLight:
       return count_of(plan.lights.size(), "light") + ", " + count_of(settings.light_samples, "sample") +
-             " each: " + count_of(plan.lights.size() * settings.light_samples, "call") + " a bounce";
+             " each: " + count_of(plan.lights.size() * settings.light_samples, "call") + " a bounce" +
+             only_bounce(settings, 1);
     case Stage::kSampleHemisphere:
-      return "--direct hemisphere, " + count_of(settings.light_samples, "sample") + " a vertex";
+      return "--direct hemisphere, " + count_of(settings.light_samples, "sample") + " a vertex" +
+             only_bounce(settings, 1);
     case Stage::kConnectSphere:
       return "light by way of a reflection at " + count_of(plan.connected_spheres.size(), "sphere") +
-             ", one chosen by each sample of a light";
+             ", one chosen by each sample of a light" + only_bounce(settings, 2);
+    case Stage::kLightMicrofacet:
+    case Stage::kShadeMicrofacet:
+      if (settings.course.any()) return "--model: the course program's lobe, not Beckmann's";
+      return "";
     case Stage::kRoulette:
       return "from bounce " + std::to_string(kRouletteBounce) + " on";
     default:

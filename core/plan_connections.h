@@ -26,9 +26,9 @@ void connect_spheres(Plan& plan);
 
 inline bool connects(const Plan& plan) { return !plan.connected_spheres.empty(); }
 
-// Whether it does so from vertices with this many scattering events behind them: two more must be allowed.
+// Whether it does so from vertices with this many scattering events behind them: two more must be allowed, and shown.
 inline bool connects_at(const Plan& plan, uint32_t bounce) {
-  return bounce + 2 <= plan.settings.max_depth && connects(plan);
+  return bounce + 2 <= plan.settings.max_depth && plan.settings.shows(bounce + 2) && connects(plan);
 }
 
 // The random numbers of a connection to light step.light: see core/dimensions.h.

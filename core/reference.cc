@@ -62,19 +62,23 @@ void add_connection(const Plan& plan, Path<T>& p, Profile& profile) {
 }
 
 template <class T>
+void add_light_sample(const Plan& plan, Path<T>& p, Profile& profile) {
+  const bool hemisphere = plan.settings.direct == Direct::kHemisphere;
+  hemisphere ? reference::sample_hemisphere(plan, p) : reference::sample_light(plan, p);
+  weigh_light(plan, p);
+  if (is_black(p)) return;
+  ++profile.shadow_rays;
+  hemisphere ? reference::gather_emission(plan, p) : reference::occlude(plan, p);
+}
+
+template <class T>
 void add_direct_light(const Plan& plan, Path<T>& p, Profile& profile) {
   const Settings& settings = plan.settings;
   if (p.bin >= kRoughBins || settings.direct == Direct::kBsdf) return;
-  const bool hemisphere = settings.direct == Direct::kHemisphere;
-  const uint32_t lights = hemisphere ? 1 : static_cast<uint32_t>(plan.lights.size());
+  const uint32_t lights = settings.direct == Direct::kHemisphere ? 1 : static_cast<uint32_t>(plan.lights.size());
   for (p.step.light = 0; p.step.light < lights; ++p.step.light) {
     for (p.step.light_sample = 0; p.step.light_sample < settings.light_samples; ++p.step.light_sample) {
-      hemisphere ? reference::sample_hemisphere(plan, p) : reference::sample_light(plan, p);
-      weigh_light(plan, p);
-      if (!is_black(p)) {
-        ++profile.shadow_rays;
-        hemisphere ? reference::gather_emission(plan, p) : reference::occlude(plan, p);
-      }
+      if (settings.shows(p.step.bounce + 1)) add_light_sample(plan, p, profile);
       if (connects_at(plan, p.step.bounce)) add_connection(plan, p, profile);
     }
   }
@@ -89,7 +93,7 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
     p.step = {.bounce = bounce};
     if (bounce > 0) ++profile.bounce_rays;
     reference::intersect(plan, p);
-    if (p.bin == kEmitter) reference::emission(plan, p);
+    if (p.bin == kEmitter && plan.settings.shows(bounce)) reference::emission(plan, p);
     if (p.bin >= kSurfaceBins) return profile.count_paths(bounce, 1);
     reference::surface(plan, p);
     add_direct_light(plan, p, profile);

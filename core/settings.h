@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace lanewise {
@@ -21,12 +22,13 @@ struct Window {
 struct Settings {
   uint32_t width = 480;
   uint32_t height = 360;
-  Window crop;                 // -p: the part to render, within the picture; width 0: all of it
-  uint32_t spp = 16;           // camera samples per pixel, >= 1; the most of them with -a, --noise and --time
-  uint32_t light_samples = 1;  // per light at every vertex, >= 1
-  uint32_t max_depth = 5;      // most scattering events on a path; 0: only light seen directly
-  uint32_t threads = 0;        // 0: all the machine has
-  uint32_t wave = 4096;        // paths in flight per thread, a multiple of kLanes
+  Window crop;                          // -p: the part to render, within the picture; width 0: all of it
+  uint32_t spp = 16;                    // camera samples per pixel, >= 1; the most of them with -a, --noise and --time
+  uint32_t light_samples = 1;           // per light at every vertex, >= 1
+  uint32_t max_depth = 5;               // most scattering events on a path; 0: only light seen directly
+  std::optional<uint32_t> only_bounce;  // only light that has been scattered this many times, <= max_depth
+  uint32_t threads = 0;                 // 0: all the machine has
+  uint32_t wave = 4096;                 // paths in flight per thread, a multiple of kLanes
   uint64_t seed = 0;
   Sampler sampler = Sampler::kSobol;
   Accel accel = Accel::kPlan;
@@ -48,3 +50,6 @@ struct Settings {
 };
 
 }  // namespace lanewise
+
+  // Whether light that has been scattered this many times belongs in the picture.
+  bool shows(uint32_t scatterings) const { return !only_bounce || *only_bounce == scatterings; }

@@ -68,8 +68,9 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     run(Stage::kIntersect, live, paths);
     const Bins bins = sort(live, paths);
     profile_.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
-    emitters_.append(state_, bins[kEmitter]);
-    run(Stage::kRetire, bins[kFinished]);
+    const bool shown = plan_.settings.shows(bounce);
+    if (shown) emitters_.append(state_, bins[kEmitter]);
+    run(Stage::kRetire, shown ? bins[kFinished] : bins.span(kEmitter, kBinCount));
     profile_.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
 
     live = bins.span(0, kSurfaceBins);
@@ -97,15 +98,17 @@ void Wave::add_direct_light(const Bins& bins) {
   const Settings& settings = plan_.settings;
   if (bins.paths(0, kRoughBins) == 0 || settings.direct == Direct::kBsdf) return;
   const bool hemisphere = settings.direct == Direct::kHemisphere;  // meets all lights at once
-  const bool connects = connects_at(plan_, state_.step.bounce);
+  const uint32_t bounce = state_.step.bounce;
+  const bool straight = settings.shows(bounce + 1), connects = connects_at(plan_, bounce);
+  if (!straight && !connects) return;
   const uint32_t lights = hemisphere ? 1 : static_cast<uint32_t>(plan_.lights.size());
   for (uint32_t light = 0; light < lights; ++light) {
     for (uint32_t sample = 0; sample < settings.light_samples; ++sample) {
       state_.step.light = light;
       state_.step.light_sample = sample;
-      if (hemisphere) {
+      if (straight && hemisphere) {
         add_light_sample(bins, Stage::kSampleHemisphere, Stage::kGatherEmission, 1);
-      } else {
+      } else if (straight) {
         add_light_sample(bins, Stage::kSampleLight, Stage::kOcclude, 1);
       }
       if (!connects) continue;

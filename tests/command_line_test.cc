@@ -178,7 +178,12 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
       {{"--fresnel", "fast"}, "--fresnel"},
       {{"-H", "--direct", "mis"}, "--hemisphere"},
       {{"-e", "sky.exr"}, "--environment: not yet supported"},
-      {{"-b", "0.1"}, "--focal-distance"},  // a lens needs both
+      {{"-b", "0.1"}, "--focal-distance (-d) or --autofocus"},
+      {{"--autofocus"}, "--lens-radius"},
+      {{"--autofocus", "-b", "0.1", "-d", "3"}, "--autofocus"},
+      {{"--only-bounce", "-1"}, "--only-bounce"},
+      {{"--only-bounce", "6", "-m", "5"}, "--only-bounce: more than"},
+      {{"--model", "nice"}, "--model"},
       {{"-d", "3"}, "--lens-radius"},
       {{"-b", "-0.1", "-d", "3"}, "--lens-radius"},
       {{"-b", "0.1", "-d", "0"}, "--focal-distance"},

@@ -86,6 +86,35 @@ TEST_CASE("render: SIMD paths are the scalar renderer's paths, in every mode") {
   }
 }
 
+TEST_CASE("render: what was scattered once, twice, ... and not at all adds up to the whole picture") {
+  // Path by path: with the same random numbers each layer holds a part of what a path gathers, so only sums differ in rounding.
+  const auto check = [](Settings settings, const Scene& scene) {
+    settings.max_depth = 4;
+    const RenderResult whole = render(make_plan(scene, settings));
+    std::vector<double> sum(whole.image.rgb.size(), 0);
+    double first_layers = 0;
+    for (uint32_t bounce = 0; bounce <= 4; ++bounce) {
+      CAPTURE(bounce);
+      settings.only_bounce = settings.max_depth = bounce;
+      const Plan plan = make_plan(scene, settings);
+      const RenderResult layer = render(plan);
+      CHECK(differing(layer.image, render_reference<float>(plan).image) < 0.02);
+      CHECK(mean(layer.image, 1) > 0);
+      for (size_t i = 0; i < sum.size(); ++i) sum[i] += layer.image.rgb[i];
+      if (bounce < 4) first_layers += mean(layer.image, 1);
+    }
+    CHECK(first_layers < mean(whole.image, 1));  // so the last one counts
+    for (size_t i = 0; i < sum.size(); ++i) CHECK(sum[i] == doctest::Approx(whole.image.rgb[i]).epsilon(1e-4));
+  };
+  Settings settings = small();
+  settings.estimate_error = false;
+  check(settings, test::test_scene());
+  settings.connect = false;
+  check(settings, test::test_scene());
+  settings.direct = Direct::kHemisphere;
+  check(settings, test::test_box());
+}
+
 TEST_CASE("render: the same bits for any number of threads and any wave") {
   Settings adaptive = small(), noise = small();
   adaptive.adaptive_batch = 4, adaptive.adaptive_tolerance = 0.3;

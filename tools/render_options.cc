@@ -51,7 +51,8 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
                                          "Distance along the view axis that it shows sharp")
                               ->check(real_number(1e-6, 1e9))
                               ->type_name("D");
-  radius->needs(distance);
+  CLI::Option* autofocus =
+      app.add_flag("--autofocus", o.settings.autofocus, "The lens shows sharp what is at the centre of the picture");
   distance->needs(radius);
 }
 
@@ -90,6 +91,9 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
       ->type_name("N")
       ->capture_default_str();
   add_choice<Direct>(
+  app.add_option("--only-bounce", o.settings.only_bounce, "Only light that has been scattered exactly K times")
+      ->check(whole_number(0, kSetsPerBounce - 1))
+      ->type_name("K");
       app, "--direct", o.settings.direct,
       {{"mis", Direct::kMis}, {"light", Direct::kLight}, {"bsdf", Direct::kBsdf}, {"hemisphere", Direct::kHemisphere}},
       "How direct light is sampled");
@@ -254,3 +258,9 @@ void complete(RenderOptions& o, const CLI::App& app) {
 }
 
 }  // namespace lanewise
+  if (const auto only = o.settings.only_bounce) {
+    if (app.count("--max-depth") > 0 && *only > o.settings.max_depth) {
+      throw UsageError("--only-bounce: more than --max-depth (-m) allows");
+    }
+    o.settings.max_depth = *only;
+  }

@@ -69,6 +69,7 @@ std::string stats_json(const RenderReport& r) {
       {"converged", s.converged},
       {"paths_by_length", s.paths_by_length},
   };
+  if (settings.only_bounce) json["only_bounce"] = *settings.only_bounce;
   if (settings.seconds > 0) json["time_budget"] = settings.seconds;
   if (s.error) json["estimated_mrse"] = {{"value", s.error->mrse}, {"low", s.error->low}, {"high", s.error->high}};
   json["plan"] = decisions_json(r.plan);
@@ -103,8 +104,8 @@ std::string summary(const RenderReport& r) {
   if (adaptive || settings.seconds > 0)
     text += samples_per_pixel(r.options, s) + (limited ? " of at most " : " samples");
   if (limited) text += count_of(settings.spp, "sample");
-  text += " per pixel, depth " + std::to_string(settings.max_depth) + ", " + count_of(s.threads, "thread") + ", " +
-          r.isa + "\n";
+  text += " per pixel, " + std::string(settings.only_bounce ? "only bounce " : "depth ") +
+          std::to_string(settings.max_depth) + ", " + count_of(s.threads, "thread") + ", " + r.isa + "\n";
   if (adaptive) {
     const std::string aim = settings.noise > 0
                                 ? "standard error of " + short_number(100 * settings.noise) + " %"
