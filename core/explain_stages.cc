@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iomanip>
 #include <span>
 
 #include "core/explain_topics.h"
@@ -89,7 +90,9 @@ std::string only_bounce(const Settings& settings, uint32_t ahead) {
   const bool trees = !plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty();
   switch (stage) {
     case Stage::kGenerate:
-      return settings.lens_radius > 0 ? "a thin lens: a point of it for every path" : "a pinhole: no lens is sampled";
+      return settings.lens_radius > 0
+                 ? "a thin lens, sharp at " + distance_text(settings.focal_distance) + ": a point of it for every path"
+                 : "a pinhole: no lens is sampled";
     case Stage::kIntersect:
     case Stage::kOcclude:
     case Stage::kOccludeConnection:

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/dimensions.h"
+#include "core/autofocus.h"
 #include "core/plan_connections.h"
 #include "core/plan_flat.h"
 #include "core/plan_lights.h"
@@ -70,6 +71,7 @@ class Planner {
     find_blocking_faces(plan_, corners_, spheres_);
     find_slabs(plan_);
     build_trees();
+    focus();
     choose_stages();
     connect_spheres(plan_);
     check_random_sets();
@@ -109,8 +111,13 @@ class Planner {
       out.pixel = static_cast<float>(2 * tan_y / 600);
     }
     copy(-back, out.forward);
-    out.lens_radius = static_cast<float>(settings.lens_radius);
-    out.lens_angle = static_cast<float>(settings.lens_radius / settings.focal_distance);
+  }
+
+  void focus() {
+    Settings& settings = plan_.settings;
+    if (settings.autofocus) settings.focal_distance = distance_at_center(plan_);
+    plan_.camera.lens_radius = static_cast<float>(settings.lens_radius);
+    plan_.camera.lens_angle = static_cast<float>(settings.lens_radius / settings.focal_distance);
   }
 
   // The smallest meshes first, as long as the flat list stays short.

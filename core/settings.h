@@ -44,6 +44,7 @@ struct Settings {
   double noise = 0;                  // --noise: relative standard error to stop a pixel at, by NoiseFilm's rule; 0: off
   double seconds = 0;                // --time: of rendering; 0: as many as it takes
   bool estimate_error = false;       // what `lanewise render` does unless told not to
+  bool autofocus = false;     // focal_distance becomes that of what is at the picture's centre
 
   // The pixels that are rendered, and the result's size.
   Window window() const { return crop.width > 0 ? crop : Window{0, 0, width, height}; }

@@ -3,6 +3,7 @@
 
 #include "core/render.h"
 #include "core/scene.h"
+#include "core/types.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -63,6 +64,21 @@ TEST_CASE("lens: what is in focus is as sharp as by a pinhole, the rest is not")
     CHECK((distance == 2 ? right : left) > 60);
     CHECK(partly_lit(reference, 0, 20) == left);
   }
+}
+
+TEST_CASE("lens: autofocus is at the distance of what is at the centre") {
+  Settings settings;
+  settings.width = settings.height = 40;
+  settings.lens_radius = 0.2;
+  settings.autofocus = true;
+  Scene scene = two_cards();
+  CHECK_THROWS_AS(make_plan(scene, settings), UsageError);  // the cards leave it free
+  for (glm::dvec3& p : scene.meshes[1].positions) p.x -= 1.4;
+  const Plan plan = make_plan(scene, settings);
+  CHECK(plan.settings.focal_distance == doctest::Approx(4).epsilon(1e-6));
+  settings.autofocus = false;
+  settings.focal_distance = 4;
+  CHECK(plan.camera.lens_angle == doctest::Approx(make_plan(scene, settings).camera.lens_angle).epsilon(1e-6));
 }
 
 }  // namespace lanewise

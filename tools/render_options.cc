@@ -54,6 +54,7 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
   CLI::Option* autofocus =
       app.add_flag("--autofocus", o.settings.autofocus, "The lens shows sharp what is at the centre of the picture");
   distance->needs(radius);
+  autofocus->needs(radius)->excludes(distance);
 }
 
 void add_sampling_flags(CLI::App& app, RenderOptions& o) {
@@ -252,6 +253,9 @@ void complete(RenderOptions& o, const CLI::App& app) {
   }
   if (o.settings.seconds > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--time contradicts --adaptive (-a)");
+  if (app.count("--lens-radius") > 0 && app.count("--focal-distance") == 0 && !o.settings.autofocus) {
+    throw UsageError("--lens-radius (-b): needs --focal-distance (-d) or --autofocus");
+  }
     if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = Probes::kMostSamples;
   }
   if (o.output.empty()) o.output = default_output(o.scene);
