@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <span>
+#include <sstream>
 
 #include "core/explain_topics.h"
 #include "core/plan_connections.h"
@@ -74,8 +75,6 @@ std::string why_no_light_stage(const Plan& plan, Bin bin) {
 }
 
 // Why a stage that runs is the way it is.
-std::string why_so(const Plan& plan, Stage stage) {
-  const Settings& settings = plan.settings;
 std::string distance_text(double distance) {
   std::ostringstream text;
   text << std::setprecision(4) << distance;
@@ -87,6 +86,8 @@ std::string only_bounce(const Settings& settings, uint32_t ahead) {
   return settings.only_bounce ? "; only at bounce " + std::to_string(*settings.only_bounce - ahead) : "";
 }
 
+std::string why_so(const Plan& plan, Stage stage) {
+  const Settings& settings = plan.settings;
   const bool trees = !plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty();
   switch (stage) {
     case Stage::kGenerate:

@@ -14,6 +14,15 @@ enum class Accel { kPlan, kTree };  // where rays look for geometry: as the plan
 enum class Fresnel { kExact, kSchlick, kCourse };
 enum class Sampler { kSobol, kRandom };  // where a path's numbers come from: see kernels/rng-inl.h
 
+// How the course program's microfacet lobe departs from Beckmann's with Smith's shadowing: kernels/microfacet-inl.h has the
+// formulas. (Its reflectances are Fresnel::kCourse.)
+struct CourseLobe {
+  bool masking = false;  // its Lambda, which has pi for sqrt(pi), and 1 / (1 + Lambda + Lambda) for G
+  bool clamp = false;    // its D, which takes no cosine above 1 - 1e-5: polished metals go dark
+
+  bool any() const { return masking || clamp; }
+};
+
 // A rectangle of pixels of the whole picture; row 0 is at the top.
 struct Window {
   uint32_t x = 0, y = 0, width = 0, height = 0;
@@ -35,22 +44,23 @@ struct Settings {
   View view = View::kFile;
   double lens_radius = 0;     // -b: of a thin lens, in scene units; 0: a pinhole
   double focal_distance = 1;  // -d: along the view axis, of the plane that the lens shows sharp, > 0
+  bool autofocus = false;     // focal_distance becomes that of what is at the picture's centre
   Direct direct = Direct::kMis;
   bool connect = true;  // connections by way of mirror and glass spheres: see core/plan_connections.h
   BsdfSampling bsdf_sampling = BsdfSampling::kVndf;
   Fresnel fresnel = Fresnel::kExact;
+  CourseLobe course;
   uint32_t adaptive_batch = 0;       // -a: samples between two decisions; 0: off
   double adaptive_tolerance = 0.05;  // stop a pixel when 1.96 sigma / sqrt(n) <= tolerance * mean
   double noise = 0;                  // --noise: relative standard error to stop a pixel at, by NoiseFilm's rule; 0: off
   double seconds = 0;                // --time: of rendering; 0: as many as it takes
   bool estimate_error = false;       // what `lanewise render` does unless told not to
-  bool autofocus = false;     // focal_distance becomes that of what is at the picture's centre
 
   // The pixels that are rendered, and the result's size.
   Window window() const { return crop.width > 0 ? crop : Window{0, 0, width, height}; }
-};
-
-}  // namespace lanewise
 
   // Whether light that has been scattered this many times belongs in the picture.
   bool shows(uint32_t scatterings) const { return !only_bounce || *only_bounce == scatterings; }
+};
+
+}  // namespace lanewise

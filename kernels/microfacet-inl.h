@@ -10,6 +10,7 @@
 #define LANEWISE_KERNELS_MICROFACET_INL_H_
 #endif
 
+#include "core/settings.h"
 #include "kernels/math-inl.h"
 #include "kernels/simd-inl.h"
 
@@ -56,6 +57,27 @@ HWY_INLINE SlopeView ViewSlopes(VF cosine, VF sine, VF alpha) {
 HWY_INLINE VF SmithG1(const SlopeView& v) { return hn::Div(hn::Add(v.half, v.half), v.area); }
 // G1 / cosine, finite at grazing angles.
 HWY_INLINE VF SmithG1OverCos(const SlopeView& v) { return hn::Div(Splat(1.77245385090552f), v.area); }
+
+// The tangent's square where the cosine is 1 - 1e-5.
+constexpr float kCourseTan2 = 2.00003e-5f;
+
+// G of the course program: 1 / (1 + Lambda(wo) + Lambda(wi)) with Lambda(a) = (e^(-a^2) / (pi a) - erfc(a)) / 2, a = c / s. It
+// exceeds 1, by up to 5%, where Lambda is negative.
+HWY_INLINE VF CourseLambda(const SlopeView& v) {
+  return hn::Mul(Splat(0.5f), hn::MulSub(Splat(0.318309886183791f), hn::Div(v.cut_e, v.cut), v.cut_ec));
+}
+HWY_INLINE VF CourseG(const SlopeView& wo, const SlopeView& wi) {
+  const VF one = Splat(1.0f);
+  return hn::Div(one, hn::Add(one, hn::Add(CourseLambda(wo), CourseLambda(wi))));
+}
+
+// f cos without Fresnel, D G / (4 cos_o), as the course program departs from it.
+HWY_INLINE VF CourseFCos(const CourseLobe& course, VF tan2, VF alpha, const SlopeView& wo, const SlopeView& wi) {
+  const VF d = BeckmannD(course.clamp ? hn::Max(tan2, Splat(kCourseTan2)) : tan2, alpha);
+  const VF g_over_cos =
+      course.masking ? hn::Div(CourseG(wo, wi), hn::Max(wo.c, Splat(1e-6f))) : hn::Mul(SmithG1OverCos(wo), SmithG1(wi));
+  return hn::Mul(hn::Mul(Splat(0.25f), d), g_over_cos);
+}
 
 // u in [0, 1) to a slope x of the view's density: the root of P(x) = u by three Halley steps. Where P(0) > u the root
 // is sought for the lower tail, elsewhere for the upper one, so that neither tail is lost in the other's rounding; both

@@ -32,6 +32,7 @@ void LightMicrofacet(const Plan& plan, const PathState& s, Range range) {
   const DF df;
   const VF zero = hn::Zero(df);
   const LightTerms light(plan, s.step);
+  const CourseLobe course = plan.settings.course;
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(df)) {
     const Vec3 d = LoadVec3(s.d_x, s.d_y, s.d_z, i);
     const Vec3 normal = ViewerSide(LoadVec3(s.s_x, s.s_y, s.s_z, i), d);
@@ -51,7 +52,8 @@ void LightMicrofacet(const Plan& plan, const PathState& s, Range range) {
     const SlopeView view_i = ViewSlopes(hn::Max(cos_i, zero), hn::Sqrt(Dot(across_i, across_i)), alpha);
     const VF distribution = BeckmannD(h.tan2, alpha);
     const VF visible_pdf = VisibleNormalPdf(distribution, view_o);
-    const VF f_cos = hn::Mul(visible_pdf, SmithG1(view_i));  // without Fresnel
+    const VF f_cos = course.any() ? CourseFCos(course, h.tan2, alpha, view_o, view_i)
+                                  : hn::Mul(visible_pdf, SmithG1(view_i));  // without Fresnel
 
     VF pdf;
     switch (plan.settings.bsdf_sampling) {
@@ -84,7 +86,7 @@ HWY_INLINE SlopeView ViewSlopes(const Vec3& w, VF alpha) {
 }
 
 // Reflects wo about a microfacet chosen from the visible normals, or from all of them.
-HWY_INLINE LobeSample SampleFacet(bool visible, const Vec3& wo, VF alpha, VF u, VF v) {
+HWY_INLINE LobeSample SampleFacet(const CourseLobe& course, bool visible, const Vec3& wo, VF alpha, VF u, VF v) {
   const VF one = Splat(1.0f);
   const SlopeView view_o = ViewSlopes(wo, alpha);
   const VF sine = hn::Sqrt(hn::MulAdd(wo.x, wo.x, hn::Mul(wo.y, wo.y)));
@@ -96,7 +98,8 @@ HWY_INLINE LobeSample SampleFacet(bool visible, const Vec3& wo, VF alpha, VF u, 
   LobeSample sample;
   sample.wi = {hn::MulSub(twice, m.x, wo.x), hn::MulSub(twice, m.y, wo.y), hn::Sub(twice, wo.z)};
   sample.cos_h = hn::Min(hn::Div(wo_m, hn::Sqrt(length2)), one);
-  const VF g1 = SmithG1(ViewSlopes(sample.wi, alpha));
+  const SlopeView view_i = ViewSlopes(sample.wi, alpha);
+  const VF g1 = SmithG1(view_i);
   const VF distribution = BeckmannD(tan2, alpha);
   if (visible) {
     sample.weight = g1;
@@ -105,18 +108,25 @@ HWY_INLINE LobeSample SampleFacet(bool visible, const Vec3& wo, VF alpha, VF u, 
     sample.weight = hn::Mul(hn::Mul(g1, SmithG1OverCos(view_o)), wo_m);
     sample.pdf = NormalPdf(distribution, wo_m);
   }
+  if (course.any()) {
+    sample.weight = hn::Div(CourseFCos(course, tan2, alpha, view_o, view_i), hn::Max(sample.pdf, Splat(1e-30f)));
+  }
   return sample;
 }
 
-HWY_INLINE LobeSample SampleCosine(const Vec3& wo, VF alpha, VF u, VF v) {
+HWY_INLINE LobeSample SampleCosine(const CourseLobe& course, const Vec3& wo, VF alpha, VF u, VF v) {
   LobeSample sample;
   sample.wi = CosineHemisphere(u, v);
   const VF x = hn::Add(wo.x, sample.wi.x), y = hn::Add(wo.y, sample.wi.y);
   const HalfVector h = MakeHalfVector(hn::Add(wo.z, sample.wi.z), hn::MulAdd(x, x, hn::Mul(y, y)));
   sample.cos_h = h.cos;
-  const VF over_cos = hn::Mul(SmithG1OverCos(ViewSlopes(wo, alpha)), SmithG1OverCos(ViewSlopes(sample.wi, alpha)));
+  const SlopeView view_o = ViewSlopes(wo, alpha), view_i = ViewSlopes(sample.wi, alpha);
+  const VF over_cos = hn::Mul(SmithG1OverCos(view_o), SmithG1OverCos(view_i));
   sample.weight = hn::Mul(hn::Mul(Splat(0.25f * kPi), BeckmannD(h.tan2, alpha)), over_cos);
   sample.pdf = hn::Mul(sample.wi.z, Splat(kInvPi));
+  if (course.any()) {
+    sample.weight = hn::Div(CourseFCos(course, h.tan2, alpha, view_o, view_i), hn::Max(sample.pdf, Splat(1e-30f)));
+  }
   return sample;
 }
 
@@ -124,6 +134,7 @@ void ShadeMicrofacet(const Plan& plan, const PathState& s, Range range) {
   const DF df;
   const VF zero = hn::Zero(df);
   const BsdfSampling strategy = plan.settings.bsdf_sampling;
+  const CourseLobe course = plan.settings.course;
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(df)) {
     const Vec3 d = LoadVec3(s.d_x, s.d_y, s.d_z, i);
     const Vec3 normal = ViewerSide(LoadVec3(s.s_x, s.s_y, s.s_z, i), d);
@@ -135,8 +146,8 @@ void ShadeMicrofacet(const Plan& plan, const PathState& s, Range range) {
     const Random4 random = DrawDirection(plan, s, i);
     const VF u = random.u[kDrawU], v = random.u[kDrawV];
     const LobeSample sample = strategy == BsdfSampling::kCosine
-                                  ? SampleCosine(wo, alpha, u, v)
-                                  : SampleFacet(strategy == BsdfSampling::kVndf, wo, alpha, u, v);
+                                  ? SampleCosine(course, wo, alpha, u, v)
+                                  : SampleFacet(course, strategy == BsdfSampling::kVndf, wo, alpha, u, v);
 
     const MF reflects = hn::And(hn::Gt(sample.wi.z, zero), hn::Gt(sample.cos_h, zero));
     const Vec3 wi = Normalize(ToWorld(sample.wi, b1, b2, normal));

@@ -114,7 +114,7 @@ TEST_CASE("shade_microfacet: the pdf written is the density that light samples a
         for (uint32_t i = 0; i < kPaths; ++i) {
           if (s.beta_r[i] == 0 || s.d_z[i] < 1e-3f) continue;
           const Vec wo(std::sqrt(1 - cosine * cosine), 0, cosine), wi(s.d_x[i], s.d_y[i], s.d_z[i]);
-          const auto pair = reference::evaluate_microfacet<double>(strategy, wo, wi, alpha);
+          const auto pair = reference::evaluate_microfacet<double>(with(strategy), wo, wi, alpha);
           worst = std::max(worst, std::abs(s.pdf[i] / pair.pdf - 1));
           // beta = f cos / pdf, whatever the closed form it comes from.
           const double f = reference::fresnel_conductor(Fresnel::kExact, pair.cos_h, 0.21646, 3.2390);

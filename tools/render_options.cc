@@ -91,10 +91,10 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
       ->check(whole_number(0, kSetsPerBounce - 1))
       ->type_name("N")
       ->capture_default_str();
-  add_choice<Direct>(
   app.add_option("--only-bounce", o.settings.only_bounce, "Only light that has been scattered exactly K times")
       ->check(whole_number(0, kSetsPerBounce - 1))
       ->type_name("K");
+  add_choice<Direct>(
       app, "--direct", o.settings.direct,
       {{"mis", Direct::kMis}, {"light", Direct::kLight}, {"bsdf", Direct::kBsdf}, {"hemisphere", Direct::kHemisphere}},
       "How direct light is sampled");
@@ -108,6 +108,14 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
   add_choice<Fresnel>(app, "--fresnel", o.settings.fresnel,
                       {{"exact", Fresnel::kExact}, {"schlick", Fresnel::kSchlick}, {"course", Fresnel::kCourse}},
                       "Formulas for reflectance");
+  add_choice<Model>(
+      app, "--model", o.model,
+      {{"exact", Model::kExact},
+       {"course", Model::kCourse},
+       {"course-masking", Model::kCourseMasking},
+       {"course-clamp", Model::kCourseClamp}},
+      "Microfacets and estimators: exact, or as the course program has them (--direct light, --bsdf-sampling ndf, "
+      "--fresnel course, --connect off, and its masking and clamp, of which there is also each alone)");
 }
 
 void add_material_flags(CLI::App& app, RenderOptions& o) {
@@ -186,6 +194,19 @@ void add_not_yet_flags(CLI::App& app) {
   }
 }
 
+// What flags of their own say stays as they say.
+void choose_model(RenderOptions& o, const CLI::App& app) {
+  Settings& settings = o.settings;
+  const bool all = o.model == Model::kCourse;
+  settings.course = {.masking = all || o.model == Model::kCourseMasking,
+                     .clamp = all || o.model == Model::kCourseClamp};
+  if (!all) return;
+  if (app.count("--direct") == 0 && !o.hemisphere) settings.direct = Direct::kLight;
+  if (app.count("--bsdf-sampling") == 0) settings.bsdf_sampling = BsdfSampling::kNdf;
+  if (app.count("--fresnel") == 0) settings.fresnel = Fresnel::kCourse;
+  if (app.count("--connect") == 0) settings.connect = false;
+}
+
 std::string default_output(const std::string& scene) {
   const size_t colon = scene.starts_with("builtin:") ? scene.find(':') + 1 : 0;
   return std::filesystem::path(scene.substr(colon)).stem().string() + ".png";
@@ -227,12 +248,22 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
 }
 
 void complete(RenderOptions& o, const CLI::App& app) {
+  choose_model(o, app);
   if (o.hemisphere && app.count("--direct") > 0 && o.settings.direct != Direct::kHemisphere) {
     throw UsageError("--hemisphere (-H) contradicts --direct");
   }
   if (o.hemisphere) o.settings.direct = Direct::kHemisphere;
+  if (app.count("--lens-radius") > 0 && app.count("--focal-distance") == 0 && !o.settings.autofocus) {
+    throw UsageError("--lens-radius (-b): needs --focal-distance (-d) or --autofocus");
+  }
   if (uint64_t{o.resolution.first} * o.resolution.second > kMaxPixels) {
     throw UsageError("--resolution: more than 2^28 pixels");
+  }
+  if (const auto only = o.settings.only_bounce) {
+    if (app.count("--max-depth") > 0 && *only > o.settings.max_depth) {
+      throw UsageError("--only-bounce: more than --max-depth (-m) allows");
+    }
+    o.settings.max_depth = *only;
   }
   std::tie(o.settings.width, o.settings.height) = o.resolution;
   if (app.count("--crop") > 0) {
@@ -253,18 +284,9 @@ void complete(RenderOptions& o, const CLI::App& app) {
   }
   if (o.settings.seconds > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--time contradicts --adaptive (-a)");
-  if (app.count("--lens-radius") > 0 && app.count("--focal-distance") == 0 && !o.settings.autofocus) {
-    throw UsageError("--lens-radius (-b): needs --focal-distance (-d) or --autofocus");
-  }
     if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = Probes::kMostSamples;
   }
   if (o.output.empty()) o.output = default_output(o.scene);
 }
 
 }  // namespace lanewise
-  if (const auto only = o.settings.only_bounce) {
-    if (app.count("--max-depth") > 0 && *only > o.settings.max_depth) {
-      throw UsageError("--only-bounce: more than --max-depth (-m) allows");
-    }
-    o.settings.max_depth = *only;
-  }

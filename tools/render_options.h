@@ -15,6 +15,8 @@ namespace lanewise {
 
 enum class Reference { kNone, kFloat, kDouble };  // the scalar path tracer in place of the kernels
 
+enum class Model { kExact, kCourse, kCourseMasking, kCourseClamp };  // all of the course program's departures, or one
+
 struct RenderOptions {
   std::string scene;
   std::string output;       // the picture's file; complete() fills it in
@@ -35,6 +37,7 @@ struct RenderOptions {
   std::array<uint32_t, 4> crop{};
   std::pair<uint32_t, double> adaptive{settings.adaptive_batch, settings.adaptive_tolerance};
   bool hemisphere = false;
+  Model model = Model::kExact;
 };
 
 // Adds the scene and the flags that say what is rendered and how, with checks of each value by itself. Values go to `options`,

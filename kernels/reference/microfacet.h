@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/settings.h"
 #include "kernels/reference/vec3.h"
 
 namespace lanewise::reference {
@@ -34,6 +35,20 @@ struct SlopeView {
   T g1() const { return 2 * half / area; }
   T g1_over_cos() const { return std::sqrt(std::numbers::pi_v<T>) / area; }
 };
+
+// The course program's departures: kernels/microfacet-inl.h.
+template <class T>
+T course_lambda(const SlopeView<T>& v) {
+  return (std::exp(-v.cut * v.cut) * std::numbers::inv_pi_v<T> / v.cut - std::erfc(v.cut)) / 2;
+}
+
+template <class T>
+T course_f_cos(const CourseLobe& course, T tan2, T alpha, const SlopeView<T>& wo, const SlopeView<T>& wi) {
+  const T d = beckmann_d(course.clamp ? std::max(tan2, T(2.00003e-5f)) : tan2, alpha);
+  const T g_over_cos = course.masking ? 1 / (1 + course_lambda(wo) + course_lambda(wi)) / std::max(wo.c, T(1e-6f))
+                                      : wo.g1_over_cos() * wi.g1();
+  return d / 4 * g_over_cos;
+}
 
 // The slope x below which lies the share u of the view's density: Halley's steps, each kept within a bracket that
 // shrinks, until they end.

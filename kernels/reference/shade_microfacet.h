@@ -35,7 +35,7 @@ SlopeView<T> view_slopes(const Vec3<T>& w, T alpha) {
 }
 
 template <class T>
-MicrofacetPair<T> evaluate_microfacet(BsdfSampling strategy, const Vec3<T>& wo, const Vec3<T>& wi, T alpha) {
+MicrofacetPair<T> evaluate_microfacet(const Settings& settings, const Vec3<T>& wo, const Vec3<T>& wi, T alpha) {
   const Vec3<T> h = wo + wi;
   const T z = std::max(h.z, T(1e-6)), across2 = h.x * h.x + h.y * h.y, length2 = z * z + across2;
   const T d = beckmann_d(across2 / (z * z), alpha);
@@ -45,7 +45,11 @@ MicrofacetPair<T> evaluate_microfacet(BsdfSampling strategy, const Vec3<T>& wo, 
   const T visible_pdf = d * view_o.g1_over_cos() / 4;
   pair.f_cos = visible_pdf * view_i.g1();
   pair.f = visible_pdf * view_i.g1_over_cos();
-  switch (strategy) {
+  if (settings.course.any()) {
+    pair.f_cos = course_f_cos(settings.course, across2 / (z * z), alpha, view_o, view_i);
+    pair.f = pair.f_cos / std::max(wi.z, T(1e-30f));
+  }
+  switch (settings.bsdf_sampling) {
     case BsdfSampling::kVndf:
       pair.pdf = visible_pdf;
       break;
@@ -71,7 +75,7 @@ void light_microfacet(const Plan& plan, Path<T>& p) {
   wo.z = std::max(wo.z, T(0));
   const Vec3<T> wi = local(l);
   if (wi.z > 0 && p.l_pdf > 0) {
-    const auto pair = evaluate_microfacet(plan.settings.bsdf_sampling, wo, wi, alpha_of<T>(material));
+    const auto pair = evaluate_microfacet(plan.settings, wo, wi, alpha_of<T>(material));
     c = LANEWISE_RGB(p, beta) * fresnel_conductor(plan, material, pair.cos_h) * pair.f_cos *
         light_weight(plan, p, pair.pdf);
   }
@@ -94,7 +98,7 @@ void shade_microfacet(const Plan& plan, Path<T>& p) {
   T cos_h, weight, pdf;
   if (strategy == BsdfSampling::kCosine) {
     wi = cosine_hemisphere(u, v);
-    const auto pair = evaluate_microfacet(strategy, wo, wi, alpha);
+    const auto pair = evaluate_microfacet(plan.settings, wo, wi, alpha);
     cos_h = pair.cos_h;
     weight = pair.f * std::numbers::pi_v<T>;
     pdf = pair.pdf;
@@ -109,6 +113,9 @@ void shade_microfacet(const Plan& plan, Path<T>& p) {
     const T distribution = beckmann_d(tan2, alpha);
     weight = visible ? view_i.g1() : view_i.g1() * view_o.g1_over_cos() * wo_m;
     pdf = visible ? distribution * view_o.g1_over_cos() / 4 : distribution / 4 / std::max(wo_m, T(1e-6));
+    if (const CourseLobe& course = plan.settings.course; course.any()) {
+      weight = course_f_cos(course, tan2, alpha, view_o, view_i) / std::max(pdf, T(1e-30f));
+    }
   }
   const bool reflects = wi.z > 0 && cos_h > 0;
   leave(p, glm::normalize(to_world(wi, b1, b2, normal)),

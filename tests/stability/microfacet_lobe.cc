@@ -9,6 +9,7 @@ namespace {
 Plan lobe_plan(const Lobe& lobe) {
   Settings settings;
   settings.bsdf_sampling = lobe.sampling;
+  settings.course = lobe.course;
   settings.direct = Direct::kLight;  // light samples without a weight
   return material_plan({white_metal(static_cast<float>(lobe.alpha))}, settings);
 }

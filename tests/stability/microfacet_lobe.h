@@ -15,6 +15,7 @@ namespace lanewise::test {
 struct Lobe {
   double alpha;
   BsdfSampling sampling = Settings().bsdf_sampling;
+  CourseLobe course = {};
 };
 
 struct LobeSample {

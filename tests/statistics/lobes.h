@@ -37,7 +37,9 @@ Domain hemisphere(const OfDirection& value);
 Domain lobe(const Vec& wo, double alpha, const OfDirection& value);
 
 inline reference::MicrofacetPair<double> evaluate(BsdfSampling strategy, const Vec& wo, const Vec& wi, double alpha) {
-  return reference::evaluate_microfacet<double>(strategy, wo, wi, alpha);
+  Settings settings;
+  settings.bsdf_sampling = strategy;
+  return reference::evaluate_microfacet<double>(settings, wo, wi, alpha);
 }
 
 }  // namespace lanewise::test::lobes
