@@ -30,6 +30,8 @@ void ApplyFunction(Function f, const float* x, float* y, size_t n) {
         SinCos2Pi(u, sin, cos);
         return cos;
       });
+    case Function::kAtanTurns:
+      return Map(x, y, n, [](VF t) HWY_ATTR { return AtanTurns(t); });
     case Function::kExp:
       return Map(x, y, n, [](VF v) HWY_ATTR { return Exp(v); });
     case Function::kLog:
@@ -41,6 +43,13 @@ void ApplyFunction(Function f, const float* x, float* y, size_t n) {
   }
 }
 
+void ApplyAtan2Turns(const float* y, const float* x, float* turns, size_t n) {
+  const DF d;
+  for (size_t i = 0; i < n; i += hn::Lanes(d)) {
+    hn::StoreU(Atan2Turns(hn::LoadU(d, y + i), hn::LoadU(d, x + i)), d, turns + i);
+  }
+}
+
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
 }  // namespace lanewise
@@ -49,6 +58,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace lanewise {
 HWY_EXPORT(ApplyFunction);
+HWY_EXPORT(ApplyAtan2Turns);
 void apply_function(Function f, const float* x, float* y, size_t n) { HWY_DYNAMIC_DISPATCH(ApplyFunction)(f, x, y, n); }
+void apply_atan2_turns(const float* y, const float* x, float* turns, size_t n) {
+  HWY_DYNAMIC_DISPATCH(ApplyAtan2Turns)(y, x, turns, n);
+}
 }  // namespace lanewise
 #endif

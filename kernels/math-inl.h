@@ -41,6 +41,31 @@ HWY_INLINE void SinCos2Pi(VF u, VF& sin, VF& cos) {
   cos = hn::Xor(hn::IfThenElse(swap, s, c), cos_sign);
 }
 
+// atan(t) / (2 pi) for |t| <= tan(pi / 8).
+HWY_INLINE VF AtanTurns(VF t) {
+  const VF t2 = hn::Mul(t, t);
+  VF p = hn::MulAdd(t2, Splat(0.011967405f), Splat(-0.021804143f));
+  p = hn::MulAdd(t2, p, Splat(0.03176614f));
+  p = hn::MulAdd(t2, p, Splat(-0.05305004f));
+  return hn::Mul(t, hn::MulAdd(t2, p, Splat(0.15915494f)));
+}
+
+// The angle of (x, y) in turns, in [-1/2, 1/2], good to 3 ulp also beside its zeros; 0 or 1/2 for (0, 0). y's sign, also of a
+// zero, is the angle's. Neither may be NaN or infinite.
+HWY_INLINE VF Atan2Turns(VF y, VF x) {
+  const VF ax = hn::Abs(x), ay = hn::Abs(y);
+  const VF least = hn::Min(ax, ay), most = hn::Max(ax, ay);
+  // Beyond tan(pi / 8) from 1/8 turn on.
+  const MF beyond = hn::Gt(least, hn::Mul(most, Splat(0.41421357f)));
+  const VF opposite = hn::IfThenElse(beyond, hn::Sub(least, most), least);
+  const VF adjacent = hn::IfThenElse(beyond, hn::Add(least, most), hn::Max(most, Splat(0x1p-126f)));
+  VF turns = AtanTurns(hn::Div(opposite, adjacent));
+  turns = hn::Add(turns, hn::IfThenElseZero(beyond, Splat(0.125f)));
+  turns = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(Splat(0.25f), turns), turns);
+  turns = hn::IfThenElse(hn::Lt(x, hn::Zero(DF())), hn::Sub(Splat(0.5f), turns), turns);
+  return hn::CopySign(turns, y);
+}
+
 // e^x for x <= 88, -inf included; 0 below -87.3365, where e^x comes to the smallest normal float.
 HWY_INLINE VF Exp(VF x) {
   const DF d;

@@ -1,10 +1,15 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
 #include <vector>
 
 #include "core/types.h"
 #include "core/verify/function_study.h"
+#include "core/verify/ulp.h"
 #include "kernels/functions.h"
 #include "tests/kernel_harness.h"
 
@@ -31,6 +36,38 @@ TEST_CASE("math: errors stay within the stated ulps on every target") {
     CHECK(error.max_error > 0.4);  // no float function is exact: the study does see errors
     CHECK(error.inputs > 10000);
   }
+}
+
+TEST_CASE("math: atan2 in turns within 3 ulp, also beside the axes, on every target") {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> turn(-0.5, 0.5), decades(-30, 0);
+  constexpr uint32_t kCount = 1 << 14;
+  std::vector<float> y(kCount), x(kCount), turns(kCount);
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const double size = std::pow(10.0, decades(rng));
+    // At any angle, or beside one of the axes or diagonals.
+    const double angle =
+        i % 2 ? turn(rng) : 0.125 * std::floor(8 * turn(rng)) + turn(rng) * std::pow(10.0, decades(rng));
+    y[i] = static_cast<float>(size * std::sin(2 * std::numbers::pi * angle));
+    x[i] = static_cast<float>(size * std::cos(2 * std::numbers::pi * angle));
+  }
+  test::for_each_target([&](const std::string& target) {
+    CAPTURE(target);
+    apply_atan2_turns(y.data(), x.data(), turns.data(), kCount);
+    double worst = 0;
+    for (uint32_t i = 0; i < kCount; ++i) {
+      const double exact = std::atan2(double{y[i]}, double{x[i]}) / (2 * std::numbers::pi);
+      worst = std::max(worst, std::abs(turns[i] - exact) * verify::floats_per_unit(exact));
+    }
+    CHECK(worst <= 3);
+    CHECK(worst > 0.4);
+    const std::vector<float> at_y = {0, 0, 1, -1, 0, -0.0f, 0, -0.0f, 1, -1, 0, 0, 0, 0, 0, 0};
+    const std::vector<float> at_x = {1, 0, 0, 0, -1, -1, -0.0f, 0, -1, -1, 1, 1, 1, 1, 1, 1};
+    std::vector<float> at(16);
+    apply_atan2_turns(at_y.data(), at_x.data(), at.data(), 16);
+    at.resize(10);
+    CHECK(at == std::vector<float>{0, 0, 0.25f, -0.25f, 0.5f, -0.5f, 0, 0, 0.375f, -0.375f});
+  });
 }
 
 TEST_CASE("math: the ends of the domains") {

@@ -24,6 +24,8 @@ double sin2pi(double u) {
 
 double cos2pi(double u) { return sin2pi(u < 0.75 ? u + 0.25 : u - 0.75); }
 
+double atan_turns(double x) { return std::atan(x) / (2 * std::numbers::pi); }
+
 double exp_or_0(double x) { return x < -87.3365f ? 0 : std::exp(x); }
 
 // The square of a float is exact.
@@ -52,6 +54,8 @@ ExactFunction exact_function(Function f) {
       return sin2pi;
     case Function::kCos2Pi:
       return cos2pi;
+    case Function::kAtanTurns:
+      return atan_turns;
     case Function::kExp:
       return exp_or_0;
     case Function::kLog:
