@@ -10,8 +10,9 @@
 
 namespace lanewise {
 
-// Sets of a bounce; kSetLight has one for each light and sample of it but the very first, which is kSetPath's: add
-// light * light_samples + light_sample. Those of connections follow, by light and sample again.
+// Sets of a bounce; kSetLight has one for each light and sample of it, the environment as the last, but for the very first of
+// the scene's own, which is kSetPath's: add light * light_samples + light_sample. Those of connections follow, by light and
+// sample again.
 enum RandomPurpose : uint32_t {
   kSetPath = 0,  // the way to the vertex (place in the pixel, or direction from the one before); its first light sample
   kSetChoice = 1,             // lobe, roulette, patch of the first light sample
@@ -24,6 +25,7 @@ enum RandomPurpose : uint32_t {
 enum PathDraw : uint32_t { kDrawU = 0, kDrawV = 1 };
 enum ChoiceDraw : uint32_t { kDrawLobe = 0, kDrawRoulette = 1, kDrawFirstPatch = 2 };
 enum LightDraw : uint32_t { kDrawPatch = 0, kDrawSphere = 1, kDrawLightU = 2, kDrawLightV = 3 };
+enum EnvironmentDraw : uint32_t { kDrawSkyRow = 0, kDrawSkyColumn = 1, kDrawSkyX = 2, kDrawSkyY = 3 };
 
 constexpr uint32_t random_set(uint32_t bounce, uint32_t purpose) { return bounce * kSetsPerBounce + purpose; }
 

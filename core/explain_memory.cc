@@ -58,6 +58,9 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
   memory.add(
       "lights, materials", "by index", "",
       bytes_of(plan.materials) + bytes_of(plan.lights) + bytes_of(plan.light_patches) + bytes_of(plan.light_table));
+  if (!plan.environment.empty()) {
+    memory.add("environment", "by cell", "corners with the density, sums of chances", plan.environment.bytes());
+  }
   add("scene", "all of the above", "", memory.sum());
   return memory.sum() / 2;
 }

@@ -21,6 +21,7 @@ const char* material_name(Bin bin) {
     case kGlass:
       return "glass";
     case kEmitter:
+    case kSky:
     case kFinished:
     case kBinCount:
       break;
@@ -43,7 +44,18 @@ std::string why_no_light_samples(const Plan& plan) {
   if (const std::string why = why_nothing_scatters(plan); !why.empty()) return why;
   if (plan.settings.direct == Direct::kBsdf) return "--direct bsdf: lights are found by chance";
   if (!has_rough(plan)) return "only mirrors and glass, which take no light samples";
-  return plan.lights.empty() ? "no light" : "";
+  return sampled_lights(plan) == 0 ? "no light" : "";
+}
+
+std::string why_no_emitter_samples(const Plan& plan) {
+  if (plan.settings.direct == Direct::kHemisphere) return "--direct hemisphere";
+  const std::string why = why_no_light_samples(plan);
+  return why.empty() && plan.lights.empty() ? "no light but the environment" : why;
+}
+
+std::string why_no_environment_samples(const Plan& plan) {
+  if (plan.environment.empty()) return "no environment map (-e)";
+  return plan.settings.direct == Direct::kHemisphere ? "--direct hemisphere" : why_no_light_samples(plan);
 }
 
 bool has_delta_sphere(const Plan& plan) {
@@ -52,8 +64,7 @@ bool has_delta_sphere(const Plan& plan) {
 }
 
 std::string why_no_connections(const Plan& plan) {
-  if (const std::string why = why_no_light_samples(plan); !why.empty()) return why;
-  if (plan.settings.direct == Direct::kHemisphere) return "--direct hemisphere";
+  if (const std::string why = why_no_emitter_samples(plan); !why.empty()) return why;
   if (!plan.settings.connect) return "--connect off";
   if (!connects(plan)) {
     return has_delta_sphere(plan)
@@ -103,11 +114,16 @@ std::string why_so(const Plan& plan, Stage stage) {
                  ? "trees alone"
                  : "flat lists first, then the trees for rays that meet their bounds";
     case Stage::kSort:
-      return count_of(plan.shade_stages.size(), "material") + ", emitters, finished: a contiguous bin each";
+      return count_of(plan.shade_stages.size(), "material") + ", emitters, " +
+             (plan.environment.empty() ? "" : "the sky, ") + "finished: a contiguous bin each";
     case Stage::kEmission:
       return settings.only_bounce
                  ? "once a wave, over the paths that met a light at bounce " + std::to_string(*settings.only_bounce)
                  : "once a wave, over the paths of all bounces that met a light";
+    case Stage::kEnvironment:
+      return settings.only_bounce
+                 ? "over the paths that leave the scene at bounce " + std::to_string(*settings.only_bounce)
+                 : "at every bounce, over the paths that leave the scene";
     case Stage::kSurface:
       return plan.prim_normals.empty() ? "flat faces alone: no corner normals to fetch and mix"
                                        : "corner normals, mixed by barycentric weights";
@@ -115,6 +131,9 @@ std::string why_so(const Plan& plan, Stage stage) {
       return count_of(plan.lights.size(), "light") + ", " + count_of(settings.light_samples, "sample") +
              " each: " + count_of(plan.lights.size() * settings.light_samples, "call") + " a bounce" +
              only_bounce(settings, 1);
+    case Stage::kSampleEnvironment:
+      return "one more light, " + count_of(settings.light_samples, "sample") +
+             ": by luminance, a cell between texels first" + only_bounce(settings, 1);
     case Stage::kSampleHemisphere:
       return "--direct hemisphere, " + count_of(settings.light_samples, "sample") + " a vertex" +
              only_bounce(settings, 1);
@@ -141,7 +160,12 @@ std::string why_left_out(const Plan& plan, Stage stage) {
       return plan.lights.empty() ? "no light" : "";
     case Stage::kSurface:
       return why_nothing_scatters(plan);
+    case Stage::kEnvironment:
+      return plan.environment.empty() ? "no environment map (-e)" : "";
     case Stage::kSampleLight:
+      return why_no_emitter_samples(plan);
+    case Stage::kSampleEnvironment:
+      return why_no_environment_samples(plan);
     case Stage::kOcclude:
       if (hemisphere) return "--direct hemisphere";
       return why_no_light_samples(plan);
@@ -201,6 +225,14 @@ void explain_light(const Plan& plan, std::vector<Decision>& out) {
                  {{"lights", static_cast<double>(plan.lights.size())},
                   {"spheres", double{1} * spheres},
                   {"patches", static_cast<double>(plan.light_patches.size())}}});
+  if (!plan.environment.empty()) {
+    const EnvironmentMap& map = plan.environment;
+    out.push_back({"light",
+                   "environment",
+                   std::to_string(map.width) + " x " + std::to_string(map.height) + " texels",
+                   "a miss meets it; it comes in over the hull, so that shadow rays test every face",
+                   {{"cells", static_cast<double>(map.column_cdf.size())}}});
+  }
   if (!no_samples.empty()) return;
   const bool delta = has_bin(plan, kMirror) || has_bin(plan, kGlass);
   out.push_back({"light",

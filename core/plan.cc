@@ -70,6 +70,8 @@ class Planner {
     add_spheres();
     find_blocking_faces(plan_, corners_, spheres_);
     find_slabs(plan_);
+    plan_.environment = make_environment_map(scene_.environment, box_.diagonal());
+    if (!plan_.environment.empty()) let_all_faces_block(plan_);
     build_trees();
     focus();
     choose_stages();
@@ -253,10 +255,10 @@ class Planner {
 
   // Every light sample of a vertex draws a set of its own.
   void check_random_sets() const {
-    const uint64_t lights = plan_.lights.size() * (connects(plan_) ? 2 : 1);
+    const uint64_t lights = sampled_lights(plan_) + (connects(plan_) ? plan_.lights.size() : 0);
     const uint64_t sets = lights * plan_.settings.light_samples;
     if (sets > kSetsPerBounce - kSetLight) {
-      throw Error(scene_.path + ": " + std::to_string(plan_.lights.size()) + " lights with " +
+      throw Error(scene_.path + ": " + std::to_string(sampled_lights(plan_)) + " lights with " +
                   std::to_string(plan_.settings.light_samples) + " samples each are too many; at most " +
                   std::to_string(kSetsPerBounce - kSetLight) + " samples a vertex");
     }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/bvh.h"
+#include "core/dimensions.h"
+#include "core/environment_map.h"
 #include "core/settings.h"
 #include "core/stages.h"
 #include "core/types.h"
@@ -16,10 +18,11 @@ namespace lanewise {
 
 struct Scene;
 
-// What a ray met, as the sort needs it: one bin per shading stage, the materials that take light samples first.
-enum Bin : uint32_t { kDiffuse, kMicrofacet, kMirror, kGlass, kEmitter, kFinished, kBinCount };
+// What a ray met, as the sort needs it: one bin per shading stage, the materials that take light samples first. kSky:
+// missed, where the plan has an environment; kFinished: missed where it has none, absorbed or roulette's.
+enum Bin : uint32_t { kDiffuse, kMicrofacet, kMirror, kGlass, kEmitter, kSky, kFinished, kBinCount };
 constexpr uint32_t kRoughBins = kMirror;     // bins below this one take light samples
-constexpr uint32_t kSurfaceBins = kEmitter;  // bins below this one scatter; kFinished: missed, absorbed or roulette's
+constexpr uint32_t kSurfaceBins = kEmitter;  // bins below this one scatter
 
 // One cache line a material, gathered by index.
 struct alignas(64) PlanMaterial {
@@ -191,9 +194,11 @@ struct Plan {
   std::vector<PlanLight> lights;
   AlignedVector<float> light_table;                // 4 a light, to gather by light: radiance, area
   std::vector<ConnectedSphere> connected_spheres;  // all mirrors and glasses among the spheres, or none
+  EnvironmentMap environment;                      // around the scene; empty: black
 
   // Where rays look for them: every primitive is in exactly one of quads, triangles, spheres and the two trees. Of quads and triangles the first are
-  // those that can block light between two points of the scene: one with all geometry on one side of its plane cannot.
+  // those that can block light between two points of the scene: one with all geometry on one side of its plane cannot, but from
+  // the sky, so that with an environment these are all.
   // The last quads, from single_quads on, are the faces of slabs, which stand for them where the closest hit is wanted.
   std::vector<FlatQuad> flat_quads;
   uint32_t single_quads = 0;
@@ -210,6 +215,17 @@ struct Plan {
   std::vector<ShadeStages> shade_stages;  // only those that the scene needs, in bin order
   std::vector<PlanGroup> groups;          // every primitive is in one
 };
+
+// Lights that are sampled at a vertex, each by itself: those of the scene, then, as light number lights.size(), the environment.
+inline uint32_t sampled_lights(const Plan& plan) {
+  return static_cast<uint32_t>(plan.lights.size()) + !plan.environment.empty();
+}
+inline bool is_environment(const Plan& plan, uint32_t light) { return light == plan.lights.size(); }
+
+// The set of random numbers of the sample of a light: see core/dimensions.h.
+inline uint32_t light_set(const Plan& plan, const Step& step) {
+  return kSetLight + step.light * plan.settings.light_samples + step.light_sample;
+}
 
 // Compiles the scene for these settings. Throws Error for what a plan cannot hold (2^29 primitives or more).
 Plan make_plan(const Scene& scene, const Settings& settings);

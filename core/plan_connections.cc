@@ -57,7 +57,7 @@ void connect_spheres(Plan& plan) {
     const ConnectedSphere sphere = connected(plan, prim);
     if (sphere.importance > 0) spheres.push_back(sphere);
   }
-  if (plan.lights.size() <= kMaxConnectedLights) plan.connected_spheres = std::move(spheres);
+  if (!plan.lights.empty() && plan.lights.size() <= kMaxConnectedLights) plan.connected_spheres = std::move(spheres);
 }
 
 }  // namespace lanewise

@@ -33,7 +33,7 @@ inline bool connects_at(const Plan& plan, uint32_t bounce) {
 
 // The random numbers of a connection to light step.light: see core/dimensions.h.
 inline uint32_t connection_set(const Plan& plan, const Step& step) {
-  const uint32_t light = static_cast<uint32_t>(plan.lights.size()) + step.light;
+  const uint32_t light = sampled_lights(plan) + step.light;
   return kSetLight + light * plan.settings.light_samples + step.light_sample;
 }
 

@@ -163,6 +163,11 @@ void find_blocking_faces(Plan& plan, std::span<const FlatTriangle> triangles, st
   plan.blocking_triangles = static_cast<uint32_t>(faces - plan.flat_triangles.begin());
 }
 
+void let_all_faces_block(Plan& plan) {
+  plan.blocking_quads = static_cast<uint32_t>(plan.flat_quads.size());
+  plan.blocking_triangles = static_cast<uint32_t>(plan.flat_triangles.size());
+}
+
 void find_slabs(Plan& plan) {
   std::vector<FlatQuad>& quads = plan.flat_quads;
   std::vector<FlatQuad> faces;

@@ -15,6 +15,9 @@ void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles);
 // and spheres: all of the scene's.
 void find_blocking_faces(Plan& plan, std::span<const FlatTriangle> triangles, std::span<const FlatSphere> spheres);
 
+// Light from the environment comes in over the scene's hull, whose faces then block it, too. To be called last.
+void let_all_faces_block(Plan& plan);
+
 // Pairs quads that block no light to slabs and puts them last in their list. To be called after find_blocking_faces.
 void find_slabs(Plan& plan);
 

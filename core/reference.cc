@@ -9,11 +9,13 @@
 #include "core/stats.h"
 #include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
+#include "kernels/reference/environment.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
 #include "kernels/reference/intersect.h"
 #include "kernels/reference/occlude.h"
 #include "kernels/reference/roulette.h"
+#include "kernels/reference/sample_environment.h"
 #include "kernels/reference/sample_hemisphere.h"
 #include "kernels/reference/sample_light.h"
 #include "kernels/reference/shade_diffuse.h"
@@ -64,7 +66,10 @@ void add_connection(const Plan& plan, Path<T>& p, Profile& profile) {
 template <class T>
 void add_light_sample(const Plan& plan, Path<T>& p, Profile& profile) {
   const bool hemisphere = plan.settings.direct == Direct::kHemisphere;
-  hemisphere ? reference::sample_hemisphere(plan, p) : reference::sample_light(plan, p);
+  const bool sky = !hemisphere && is_environment(plan, p.step.light);
+  sky          ? reference::sample_environment(plan, p)
+  : hemisphere ? reference::sample_hemisphere(plan, p)
+               : reference::sample_light(plan, p);
   weigh_light(plan, p);
   if (is_black(p)) return;
   ++profile.shadow_rays;
@@ -75,11 +80,11 @@ template <class T>
 void add_direct_light(const Plan& plan, Path<T>& p, Profile& profile) {
   const Settings& settings = plan.settings;
   if (p.bin >= kRoughBins || settings.direct == Direct::kBsdf) return;
-  const uint32_t lights = settings.direct == Direct::kHemisphere ? 1 : static_cast<uint32_t>(plan.lights.size());
+  const uint32_t lights = settings.direct == Direct::kHemisphere ? 1 : sampled_lights(plan);
   for (p.step.light = 0; p.step.light < lights; ++p.step.light) {
     for (p.step.light_sample = 0; p.step.light_sample < settings.light_samples; ++p.step.light_sample) {
       if (settings.shows(p.step.bounce + 1)) add_light_sample(plan, p, profile);
-      if (connects_at(plan, p.step.bounce)) add_connection(plan, p, profile);
+      if (connects_at(plan, p.step.bounce) && !is_environment(plan, p.step.light)) add_connection(plan, p, profile);
     }
   }
 }
@@ -93,7 +98,10 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
     p.step = {.bounce = bounce};
     if (bounce > 0) ++profile.bounce_rays;
     reference::intersect(plan, p);
-    if (p.bin == kEmitter && plan.settings.shows(bounce)) reference::emission(plan, p);
+    if (plan.settings.shows(bounce)) {
+      if (p.bin == kEmitter) reference::emission(plan, p);
+      if (p.bin == kSky) reference::environment(plan, p);
+    }
     if (p.bin >= kSurfaceBins) return profile.count_paths(bounce, 1);
     reference::surface(plan, p);
     add_direct_light(plan, p, profile);

@@ -141,13 +141,16 @@ void finish_scene(Scene& scene) {
 
   if (scene.meshes.empty() && scene.spheres.empty()) fail(scene, "the scene has no geometry");
   if (scene.cameras.empty()) fail(scene, "the scene has no camera");
+}
+
+void check_light(const Scene& scene) {
   const auto emits = [&](const auto& shape) {
     const Material& material = scene.materials[shape.material];
     return material.kind == Material::Kind::kEmission && material.radiance != glm::dvec3(0.0);
   };
-  if (std::ranges::none_of(scene.meshes, emits) && std::ranges::none_of(scene.spheres, emits)) {
-    fail(scene, "the scene has no light: no mesh, sphere or area light that emits");
-  }
+  if (std::ranges::any_of(scene.meshes, emits) || std::ranges::any_of(scene.spheres, emits)) return;
+  if (std::ranges::any_of(scene.environment.rgb, [](float x) { return x > 0; })) return;
+  fail(scene, "the scene has no light: no mesh, sphere or area light that emits, no environment map (-e) that does");
 }
 
 void apply_normals(Scene& scene, Normals normals) {

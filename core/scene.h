@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/image.h"
+
 namespace lanewise {
 
 // Linear RGB values; unused members keep their defaults.
@@ -54,6 +56,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Sphere> spheres;
   std::vector<Camera> cameras;
+  Image environment;                 // the radiance around it: core/environment_map.h says where; of no size: black
   std::vector<std::string> notices;  // what the loader decided and a user may want to know, a line each
 
   size_t triangle_count() const;
@@ -74,9 +77,12 @@ struct Bounds {
 Bounds bounds(const Scene& scene);
 
 // The last step of every loader: drops zero-area triangles (with a notice that counts them) and meshes left empty, and
-// throws Error, naming scene.path, for what cannot be rendered: no geometry, no camera, no emitter, coordinates that
-// are not finite or above 1e15, indices out of range.
+// throws Error, naming scene.path, for what cannot be rendered: no geometry, no camera, coordinates that are not finite or
+// above 1e15, indices out of range.
 void finish_scene(Scene& scene);
+
+// Throws Error, naming scene.path, if nothing in it nor around it emits light.
+void check_light(const Scene& scene);
 
 enum class Normals { kFile, kSmooth, kFlat };
 

@@ -12,9 +12,11 @@ namespace lanewise {
   X(kIntersect, intersect)                  \
   X(kSort, sort)                            \
   X(kEmission, emission)                    \
+  X(kEnvironment, environment)              \
   X(kRetire, retire)                        \
   X(kSurface, surface)                      \
   X(kSampleLight, sample_light)             \
+  X(kSampleEnvironment, sample_environment) \
   X(kSampleHemisphere, sample_hemisphere)   \
   X(kConnectSphere, connect_sphere)         \
   X(kLightDiffuse, light_diffuse)           \

@@ -15,12 +15,16 @@ Kernel* kernel_of(Stage stage) {
       return intersect;
     case Stage::kEmission:
       return emission;
+    case Stage::kEnvironment:
+      return environment;
     case Stage::kRetire:
       return retire;
     case Stage::kSurface:
       return surface;
     case Stage::kSampleLight:
       return sample_light;
+    case Stage::kSampleEnvironment:
+      return sample_environment;
     case Stage::kSampleHemisphere:
       return sample_hemisphere;
     case Stage::kLightDiffuse:
@@ -70,7 +74,9 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     profile_.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
     const bool shown = plan_.settings.shows(bounce);
     if (shown) emitters_.append(state_, bins[kEmitter]);
-    run(Stage::kRetire, shown ? bins[kFinished] : bins.span(kEmitter, kBinCount));
+    if (shown) run(Stage::kEnvironment, bins[kSky]);
+    const uint32_t ended = shown ? kSky : kEmitter;
+    run(Stage::kRetire, bins.span(ended, kBinCount), bins.paths(ended, kBinCount));
     profile_.count_paths(bounce, bins.paths(kSurfaceBins, kBinCount));
 
     live = bins.span(0, kSurfaceBins);
@@ -101,17 +107,20 @@ void Wave::add_direct_light(const Bins& bins) {
   const uint32_t bounce = state_.step.bounce;
   const bool straight = settings.shows(bounce + 1), connects = connects_at(plan_, bounce);
   if (!straight && !connects) return;
-  const uint32_t lights = hemisphere ? 1 : static_cast<uint32_t>(plan_.lights.size());
+  const uint32_t lights = hemisphere ? 1 : sampled_lights(plan_);
   for (uint32_t light = 0; light < lights; ++light) {
     for (uint32_t sample = 0; sample < settings.light_samples; ++sample) {
       state_.step.light = light;
       state_.step.light_sample = sample;
+      const bool sky = !hemisphere && is_environment(plan_, light);
       if (straight && hemisphere) {
         add_light_sample(bins, Stage::kSampleHemisphere, Stage::kGatherEmission, 1);
+      } else if (straight && sky) {
+        add_light_sample(bins, Stage::kSampleEnvironment, Stage::kOcclude, 1);
       } else if (straight) {
         add_light_sample(bins, Stage::kSampleLight, Stage::kOcclude, 1);
       }
-      if (!connects) continue;
+      if (!connects || sky) continue;
       state_.step.connection = true;
       add_light_sample(bins, Stage::kConnectSphere, Stage::kOccludeConnection, 2);
       state_.step.connection = false;

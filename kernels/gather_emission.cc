@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
 #include "kernels/closest-inl.h"
+#include "kernels/environment-inl.h"
 #include "kernels/shadow-inl.h"
 #include "kernels/simd-inl.h"
 
@@ -19,6 +20,14 @@ struct GatherBatch {
   HWY_ALIGN float o[3][kSize], t[kSize], u[kSize], v[kSize];
   HWY_ALIGN uint32_t prim[kSize];
 };
+
+// Adds what the sky sends back along the rays that have missed.
+HWY_INLINE void AddSky(const Plan& plan, const PathState& s, size_t i, MF missed) {
+  if (hn::AllFalse(DF(), missed)) return;
+  const Sky sky = SkyAlong(plan.environment, LoadVec3(s.l_x, s.l_y, s.l_z, i));
+  const Vec3 added = IfThenElseZero(missed, Mul(LoadVec3(s.c_r, s.c_g, s.c_b, i), sky.radiance));
+  StoreVec3(Add(LoadVec3(s.L_r, s.L_g, s.L_b, i), added), s.L_r, s.L_g, s.L_b, i);
+}
 
 // Adds what the lights that the rays at i of the state, j of the batch, have met send back along them.
 HWY_INLINE void AddEmission(const Plan& plan, const PathState& s, size_t i, const GatherBatch& batch, size_t j) {
@@ -42,6 +51,7 @@ HWY_INLINE void AddEmission(const Plan& plan, const PathState& s, size_t i, cons
   const MF seen = hn::And(
       hn::And(hn::RebindMask(d, hn::Eq(bin, hn::Set(du, uint32_t{kEmitter}))), hn::Lt(Dot(front, l), hn::Zero(d))),
       hn::RebindMask(d, hn::Gt(hit, hn::Set(di, kNoHit))));
+  if (!plan.environment.empty()) AddSky(plan, s, i, hn::And(IsWanted(c), hn::RebindMask(d, none)));
   const MF adds = hn::And(IsWanted(c), seen);
   if (hn::AllFalse(d, adds)) return;
   const VI light = hn::BitCast(di, hn::GatherIndex(du, plan.prim_light.data(), prim));

@@ -28,7 +28,12 @@ void Intersect(const Plan& plan, const PathState& s, Range range) {
     const auto none = hn::Eq(prim, hn::Set(du, kNoPrim));
     VU bin = hn::GatherIndex(du, plan.prim_bin.data(), hn::BitCast(DI(), hn::IfThenZeroElse(none, prim)));
     if (last) bin = hn::IfThenElse(hn::Eq(bin, emitter), emitter, finished);
-    hn::Store(hn::IfThenElse(none, finished, bin), du, s.bin + i);
+    VU missed = finished;
+    if (!plan.environment.empty()) {
+      const VF beta = MaxElement(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i));
+      missed = hn::IfThenElse(hn::RebindMask(du, hn::Gt(beta, hn::Zero(d))), hn::Set(du, uint32_t{kSky}), finished);
+    }
+    hn::Store(hn::IfThenElse(none, missed, bin), du, s.bin + i);
   }
 }
 

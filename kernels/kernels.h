@@ -29,8 +29,8 @@ constexpr KernelBounds kGenerateBounds = {.fields = {exact("pixel"), exact("samp
 
 // Closest hit. Triangles are watertight (edge tests with exact signs after Woop, Benthin & Wald, JCGT 2013), spheres by the
 // stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path with beta = 0
-// is not traced and goes to kFinished, as does one that misses, or that may not scatter at what it meets because it has done
-// so max_depth times.
+// is not traced and goes to kFinished, as does one that misses (but to kSky where there is an environment), or that may not
+// scatter at what it meets because it has done so max_depth times.
 void intersect(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kIntersectFields = {.reads = "o d beta step", .writes = "prim t u v bin"};
 // The choice is that of the primitive. Of those that share the edge or vertex that is hit, rounding decides which it is; the
@@ -69,6 +69,14 @@ constexpr KernelFields kEmissionFields = {.reads = "prim t o d beta pdf L", .wri
 // Hangs on the cosine at grazing angles; front or back is a choice.
 constexpr KernelBounds kEmissionBounds = {.fields = {input_ulps("L", 3)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
+// Adds the radiance of the environment that a path which has missed the scene comes to, weighted in the same way against
+// samples of the environment. Connections do not count it.
+void environment(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kEnvironmentFields = {.reads = "d beta pdf L", .writes = "L"};
+// The density is another in the next cell of the map.
+constexpr KernelBounds kEnvironmentBounds = {.fields = {input_ulps("L", 3.5)},
+                                             .choice = {.margin = 4, .max_share = 2e-4}};
+
 // Hands the radiance of finished paths over to the wave's result, by slot.
 void retire(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kRetireFields = {.reads = "slot L", .writes = "result"};
@@ -89,6 +97,15 @@ constexpr KernelFields kSampleLightFields = {.reads = "pixel sample o n err step
 constexpr KernelBounds kSampleLightBounds = {.fields = {reach_ulps("l", 2.5), inverse_input_ulps("l_pdf", 3)},
                                              .choice = {.margin = 4, .max_share = 2e-4}};
 
+// Samples the environment, light step.light after the scene's own, and aims at it; c is the radiance that comes from there if
+// nothing is in the way. l goes out of the scene: EnvironmentMap::reach.
+void sample_environment(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kSampleEnvironmentFields = {.reads = "pixel sample step", .writes = "l l_pdf c"};
+// The azimuth in turns is rounded on the way to l. Where between two rows of texels a direction lies comes out of its angle to
+// the pole, in rows, to some millionths of one: where radiance is 50 in one and 0 in the next, c is as far off.
+constexpr KernelBounds kSampleEnvironmentBounds = {
+    .fields = {ulps("l", 9), exact("l_pdf"), {"c", Unit::kUlp, 4, 4e-4}}};
+
 // -H: aims uniformly into the hemisphere around the viewer's side of the shading normal; l is a unit vector.
 void sample_hemisphere(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kSampleHemisphereFields = {.reads = "pixel sample d s step", .writes = "l l_pdf"};
@@ -106,11 +123,12 @@ constexpr KernelBounds kConnectSphereBounds = {
     .choice = {.margin = 4, .max_share = 2e-4}};
 
 // light_<material>: what the light sample adds if it is seen: c = beta f |cos| radiance / (l_pdf samples), times the MIS
-// weight against the material's own density. With -H the radiance is not known yet and left out. Of connections
+// weight against the material's own density. The radiance is the light's, or the environment's from c; with -H it is not known
+// yet and left out. Of connections
 // the material's density is not weighed against, but says which are left to BSDF sampling (c = 0): see kMostConnectedPdf.
 // shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves the origin off the surface.
 void light_diffuse(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kLightDiffuseFields = {.reads = "prim d s beta l l_pdf step", .writes = "c"};
+constexpr KernelFields kLightDiffuseFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};
 // Hangs on the cosine at grazing angles.
 constexpr KernelBounds kLightDiffuseBounds = {.fields = {input_ulps("c", 4)},
                                               .choice = {.margin = 4, .max_share = 2e-4}};
@@ -122,7 +140,7 @@ constexpr KernelBounds kShadeDiffuseBounds = {.fields = {exact("beta"), ulps("o"
                                               .choice = {.margin = 4, .max_share = 2e-4}};
 // Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
 void light_microfacet(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kLightMicrofacetFields = {.reads = "prim d s beta l l_pdf step", .writes = "c"};
+constexpr KernelFields kLightMicrofacetFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};
 // Beckmann's exponent, tan^2 / alpha^2, hangs on the last bits of every direction when alpha is small, and those of the half
 // vector, rounded on the way, add to what moving the directions shows: so above 4 ulp. Where e^x is below float's range it
 // counts as 0.
@@ -152,7 +170,7 @@ constexpr KernelBounds kShadeGlassBounds = {
     .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Any hit on the open segment from the offset hit point to the light sample: if there is none, L += c. Not traced where
-// c = 0. Faces that cannot block light between points of the scene are left out: the plan knows which.
+// c = 0. Faces that cannot block light between points of the scene, nor from an environment, are left out: the plan knows which.
 void occlude(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kOccludeFields = {.reads = "o n err l c L", .writes = "L"};
 // The choice: blocked or not.
@@ -164,10 +182,13 @@ constexpr KernelFields kOccludeConnectionFields = {.reads = "o n err l m via c L
 constexpr KernelBounds kOccludeConnectionBounds = {.fields = {ulps("L", 2)},
                                                    .choice = {.margin = 4, .max_share = 2e-4}};
 
-// -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter. Not traced where c = 0.
+// -H: the closest hit along l, and L += c times its radiance if it is the front of an emitter, or the environment's if there is
+// none. Not traced where c = 0.
 void gather_emission(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kGatherEmissionFields = {.reads = "o n err l c L", .writes = "L"};
-constexpr KernelBounds kGatherEmissionBounds = {.fields = {ulps("L", 2)}, .choice = {.margin = 4, .max_share = 2e-4}};
+// Hangs on the direction where the environment's radiance does.
+constexpr KernelBounds kGatherEmissionBounds = {.fields = {input_ulps("L", 3)},
+                                                .choice = {.margin = 4, .max_share = 2e-4}};
 
 // Russian roulette from bounce kRouletteBounce on: survives with probability q = min(1, max channel of beta) and beta / q,
 // else beta = 0; unbiased for every q. So it never lifts a throughput above 1, and what ends a path of throughput 1 is

@@ -6,11 +6,10 @@
 #define LANEWISE_KERNELS_LIGHT_POINT_INL_H_
 #endif
 
-#include <bit>
-
 #include "core/plan.h"
 #include "kernels/math-inl.h"
 #include "kernels/rng-inl.h"
+#include "kernels/sampling-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,20 +21,6 @@ struct LightPoint {
   Vec3 n;  // unit normal of the side that emits
 };
 
-// The first patch of the light whose cdf exceeds u, by a search that takes the same steps in all lanes.
-HWY_INLINE VI FindPatch(const float* patches, const PlanLight& light, VF u) {
-  const DI d;
-  const VI last = hn::Set(d, static_cast<int32_t>(light.patches) - 1);
-  VI first = hn::Zero(d);
-  for (uint32_t step = std::bit_floor(light.patches - 1); step > 0; step >>= 1) {
-    const VI probe = hn::Min(hn::Add(first, hn::Set(d, static_cast<int32_t>(step))), last);
-    const VI before = hn::Mul(hn::Sub(probe, hn::Set(d, 1)), hn::Set(d, kLightPatchStride));
-    const VF below = hn::GatherIndex(DF(), patches + kCdf, before);
-    first = hn::IfThenElse(hn::RebindMask(d, hn::Ge(u, below)), probe, first);
-  }
-  return first;
-}
-
 HWY_INLINE LightPoint SamplePatch(const Plan& plan, const PlanLight& light, const Random4& random) {
   const LightPatch* patches = plan.light_patches.data() + light.first_patch;
   Vec3 corner, e1, e2, n;
@@ -46,7 +31,8 @@ HWY_INLINE LightPoint SamplePatch(const Plan& plan, const PlanLight& light, cons
     is_triangle = hn::Ne(Splat(patches->is_triangle), hn::Zero(DF()));
   } else {
     const float* base = patches->corner;
-    const VI at = hn::Mul(FindPatch(base, light, random.u[kDrawPatch]), hn::Set(DI(), kLightPatchStride));
+    const VI patch = FindInterval(base + kCdf, hn::Zero(DI()), kLightPatchStride, light.patches, random.u[kDrawPatch]);
+    const VI at = hn::Mul(patch, hn::Set(DI(), kLightPatchStride));
     corner = GatherVec3(base + kCorner, at), e1 = GatherVec3(base + kE1, at), e2 = GatherVec3(base + kE2, at);
     n = GatherVec3(base + kPatchNormal, at);
     is_triangle = hn::Ne(hn::GatherIndex(DF(), base + kIsTriangle, at), hn::Zero(DF()));

@@ -136,13 +136,16 @@ HWY_INLINE Random4 DrawRandom(const Plan& plan, const PathState& s, size_t i, ui
 HWY_INLINE Random4 DrawDirection(const Plan& plan, const PathState& s, size_t i) {
   return DrawSet(plan, s, i, direction_set(s.step.bounce));
 }
+// Of the environment sample of their step: EnvironmentDraw.
+HWY_INLINE Random4 DrawEnvironment(const Plan& plan, const PathState& s, size_t i) {
+  return DrawRandom(plan, s, i, light_set(plan, s.step));
+}
 // Of the light sample of their step: LightDraw.
 HWY_INLINE Random4 DrawLight(const Plan& plan, const PathState& s, size_t i) {
-  if (!is_first_light_sample(s.step)) {
-    return DrawRandom(plan, s, i, kSetLight + s.step.light * plan.settings.light_samples + s.step.light_sample);
-  }
+  if (!is_first_light_sample(s.step)) return DrawRandom(plan, s, i, light_set(plan, s.step));
   Random4 random = DrawRandom(plan, s, i, kSetPath);
-  if (plan.lights[0].patches > 1) random.u[kDrawPatch] = DrawRandom(plan, s, i, kSetChoice).u[kDrawFirstPatch];
+  if (!plan.lights.empty() && plan.lights[0].patches > 1)
+    random.u[kDrawPatch] = DrawRandom(plan, s, i, kSetChoice).u[kDrawFirstPatch];
   return random;
 }
 

@@ -25,7 +25,7 @@ void LightDiffuse(const Plan& plan, const PathState& s, Range range) {
     const MF lit = hn::And(hn::Gt(cosine, hn::Zero(d)), hn::Gt(l_pdf, hn::Zero(d)));
     // f cos = albedo pdf.
     const Vec3 albedo = LaneMaterials(plan, s, i).GetVec3(kReflectance);
-    const Vec3 c = Scale(hn::Mul(pdf, light.Weight(l_pdf, pdf)), Mul(albedo, light.radiance));
+    const Vec3 c = Scale(hn::Mul(pdf, light.Weight(l_pdf, pdf)), Mul(albedo, light.Radiance(s, i)));
     StoreVec3(IfThenElseZero(lit, Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), c)), s.c_r, s.c_g, s.c_b, i);
   }
 }

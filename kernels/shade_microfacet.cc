@@ -68,7 +68,7 @@ void LightMicrofacet(const Plan& plan, const PathState& s, Range range) {
         break;
     }
     const Vec3 fresnel = FresnelConductor(plan.settings.fresnel, h.cos, metal.eta, metal.k);
-    const Vec3 c = Scale(hn::Mul(f_cos, light.Weight(l_pdf, pdf)), Mul(fresnel, light.radiance));
+    const Vec3 c = Scale(hn::Mul(f_cos, light.Weight(l_pdf, pdf)), Mul(fresnel, light.Radiance(s, i)));
     StoreVec3(IfThenElseZero(lit, Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), c)), s.c_r, s.c_g, s.c_b, i);
   }
 }

@@ -39,18 +39,27 @@ struct LaneMaterials : LaneRecords {
 
 // What is the same for every path of a light sample.
 struct LightTerms {
-  Vec3 radiance;  // of the light; with -H it is not known yet, and 1 stands for it
+  Vec3 radiance;    // of the light; with -H it is not known yet, and 1 stands for it
+  bool from_paths;  // the environment's, which is each path's own
   VF samples;
   VF mis;       // 1: weigh against the material's own density, 0: do not
   VF most_pdf;  // directions of which the material's own density is larger are not for light samples
 
   explicit LightTerms(const Plan& plan, const Step& step)
       : radiance{Splat(1.0f), Splat(1.0f), Splat(1.0f)},
+        from_paths(false),
         samples(Splat(static_cast<float>(plan.settings.light_samples))),
         mis(Splat(plan.settings.direct == Direct::kMis ? 1.0f : 0.0f)),
         most_pdf(Splat(std::numeric_limits<float>::infinity())) {
-    if (plan.settings.direct != Direct::kHemisphere) radiance = SplatVec3(plan.lights[step.light].radiance);
+    if (plan.settings.direct != Direct::kHemisphere) {
+      from_paths = is_environment(plan, step.light);
+      if (!from_paths) radiance = SplatVec3(plan.lights[step.light].radiance);
+    }
     if (step.connection) mis = hn::Zero(DF()), most_pdf = Splat(kMostConnectedPdf);
+  }
+
+  HWY_INLINE Vec3 Radiance(const PathState& s, size_t i) const {
+    return from_paths ? LoadVec3(s.c_r, s.c_g, s.c_b, i) : radiance;
   }
 
   // w / (n l_pdf) with the power heuristic's w = (n l_pdf)^2 / ((n l_pdf)^2 + bsdf_pdf^2), by ratios, so that no square

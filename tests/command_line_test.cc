@@ -177,7 +177,7 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
       {{"--bsdf-sampling", "best"}, "--bsdf-sampling"},
       {{"--fresnel", "fast"}, "--fresnel"},
       {{"-H", "--direct", "mis"}, "--hemisphere"},
-      {{"-e", "sky.exr"}, "--environment: not yet supported"},
+      {{"-e", "sky.png"}, "sky.png: an environment map holds radiance"},
       {{"-b", "0.1"}, "--focal-distance (-d) or --autofocus"},
       {{"--autofocus"}, "--lens-radius"},
       {{"--autofocus", "-b", "0.1", "-d", "3"}, "--autofocus"},

@@ -84,6 +84,13 @@ TEST_CASE("explain: the stages said to run are those that a render calls") {
     if (m.kind != Kind::kEmission) m.kind = Kind::kMirror;
   }
   check_stages(mirrors, small());
+  Scene lit = all;
+  lit.environment = test::test_sky();
+  for (const Direct direct : {Direct::kMis, Direct::kHemisphere, Direct::kBsdf}) {
+    Settings settings = small();
+    settings.direct = direct;
+    check_stages(lit, settings);
+  }
 }
 
 TEST_CASE("explain: why stages are left out") {

@@ -61,7 +61,7 @@ class Trial {
       for (uint32_t i = 0; i < kPaths; ++i) {
         Path<float>& p = (*paths)[i];
         p.slot = i;
-        p.step = {.bounce = kRouletteBounce};
+        p.step = {.bounce = kRouletteBounce, .light = sampled_lights(plan) - 1};  // the environment's, if there is one
         kernel.fill(plan, rng, p);
       }
     }
@@ -132,8 +132,11 @@ TEST_CASE("kernel fields: kernels read and write what kernels.h lists, and all o
     const KernelFields& listed = stage_fields(stage_of(kernel));
     std::set<std::string> read, written;
     for (const Plan& plan : plans) {
-      // Connections are not tried where there are none.
-      if (kernel_name.find("connect") != std::string::npos && plan.connected_spheres.empty()) continue;
+      // Connections and the environment are not tried where there are none, nor are lights where the environment is sampled.
+      const auto of = [&](const char* what) { return kernel_name.find(what) != std::string::npos; };
+      const bool sky = !plan.environment.empty();
+      if ((of("connect") && (sky || plan.connected_spheres.empty())) || (of("environment") && !sky)) continue;
+      if (of("sample_light") && sky) continue;
       Trial trial(plan, kernel);
       const Words before = trial.words(), after = trial.run("");
       for (size_t f = 0; f < kFields; ++f) {

@@ -253,7 +253,7 @@ TEST_CASE("profile command: what it cannot do is said in one line, before any wo
   check_failure(folder, 2, {"good.json", "-s", "16"}, "--spp: nothing is rendered");
   check_failure(folder, 2, {"good.json", "--trace", "t"}, "--trace: nothing is rendered");
   check_failure(folder, 2, {scene, "--reference", "float"}, "--reference");
-  check_failure(folder, 2, {scene, "-e", "sky.exr"}, "--environment: not yet supported");
+  check_failure(folder, 2, {scene, "-e", "sky.png"}, "sky.png: an environment map holds radiance");
   CHECK(json::parse(read_text(folder.file("good.json"))) == good);
 }
 

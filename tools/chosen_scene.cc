@@ -4,6 +4,7 @@
 
 #include "core/types.h"
 #include "scenes/camera_file.h"
+#include "scenes/environment_file.h"
 #include "scenes/load.h"
 
 namespace lanewise {
@@ -41,6 +42,8 @@ Scene load_chosen_scene(const RenderOptions& o) {
   Scene scene = load_scene(o.scene);
   apply_overrides(scene, o);
   if (!o.camera_file.empty()) scene.cameras = {load_camera(o.camera_file)};
+  if (!o.environment.empty()) scene.environment = load_environment(o.environment);
+  check_light(scene);
   return scene;
 }
 

@@ -9,6 +9,7 @@ namespace lanewise {
 OutputFiles::OutputFiles(const RenderOptions& options) {
   keep(options.scene);
   if (!options.camera_file.empty()) keep(options.camera_file);
+  if (!options.environment.empty()) keep(options.environment);
 }
 
 void OutputFiles::keep(const std::string& path) { taken_.push_back(path); }

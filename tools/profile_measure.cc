@@ -73,8 +73,10 @@ double bytes_of(Stage stage, const std::array<StageCounter, kStageCount>& bounce
   const auto counter = [&](Stage s) -> const StageCounter& { return bounce[static_cast<size_t>(s)]; };
   const KernelFields& fields = stage_fields(stage);
   double moved = (words(fields.reads) + words(fields.writes)) * static_cast<double>(counter(stage).lanes);
-  if (stage == Stage::kSort) {  // what retires at its own bounce, not having met an emitter, went to kFinished
-    const auto finished = static_cast<double>(counter(Stage::kRetire).paths - counter(Stage::kEmission).paths);
+  if (stage ==
+      Stage::kSort) {  // what retires at its own bounce, not having met an emitter or the sky, went to kFinished
+    const uint64_t lit = counter(Stage::kEmission).paths + counter(Stage::kEnvironment).paths;
+    const auto finished = static_cast<double>(counter(Stage::kRetire).paths - lit);
     moved -= 2.0 * (words("KEPT") - kRetiredFields) * finished;
   }
   return 4 * moved;

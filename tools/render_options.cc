@@ -17,16 +17,6 @@ constexpr uint32_t kMaxSide = 65536;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
 constexpr uint32_t kNoiseSpp = 65536;  // -s where --noise is given without it
 
-// Flags of the course's path tracer that are understood, so that its command lines fail with a reason.
-constexpr struct {
-  const char* flag;
-  const char* values;
-  int count;
-  const char* help;
-} kNotYet[] = {
-    {"-e,--environment", "FILE", 1, "Environment map"},
-};
-
 void add_picture_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("-r,--resolution", o.resolution, "Width and height of the picture")
       ->check(whole_number(1, kMaxSide))
@@ -42,6 +32,11 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
       ->type_name("X Y DX DY");
   app.add_option("-c,--camera-file", o.camera_file,
                  "Camera (JSON: eye, target, up, xfov, aspect) in place of the scene's")
+      ->type_name("FILE");
+  app.add_option(
+         "-e,--environment", o.environment,
+         "Map of radiance around the scene, .exr or .hdr: longitude atan2(y, x) from pi at its left edge to -pi, up "
+         "(z) at its top")
       ->type_name("FILE");
   CLI::Option* radius = app.add_option("-b,--lens-radius", o.settings.lens_radius, "Radius of a thin lens")
                             ->check(real_number(0, 1e6))
@@ -184,16 +179,6 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
   app.add_flag("-q,--quiet", o.quiet, "No progress, no summary");
 }
 
-void add_not_yet_flags(CLI::App& app) {
-  for (const auto& [flag, values, count, help] : kNotYet) {
-    const std::string name = std::string(flag).substr(std::string_view(flag).find("--"));
-    app.add_option_function<std::vector<std::string>>(
-           flag, [name](const std::vector<std::string>&) { throw UsageError(name + ": not yet supported"); }, help)
-        ->expected(count)
-        ->type_name(values);
-  }
-}
-
 // What flags of their own say stays as they say.
 void choose_model(RenderOptions& o, const CLI::App& app) {
   Settings& settings = o.settings;
@@ -233,8 +218,6 @@ void add_scene_options(CLI::App& app, RenderOptions& o) {
   group("Advanced");
   add_choice<Accel>(app, "--accel", o.settings.accel, {{"plan", Accel::kPlan}, {"tree", Accel::kTree}},
                     "Where rays look for geometry: as the plan chooses; all in trees, to measure them");
-  group("Not yet supported");
-  add_not_yet_flags(app);
 }
 
 void add_render_options(CLI::App& app, RenderOptions& o) {

@@ -21,6 +21,7 @@ struct RenderOptions {
   std::string scene;
   std::string output;       // the picture's file; complete() fills it in
   std::string camera_file;  // empty: the scene's camera
+  std::string environment;  // the map around the scene; empty: none
   std::string stats;        // the statistics' file; empty: none
   std::string rate;         // the file of the picture of sample counts; empty: none
   Settings settings;        // settings.seconds: as given, from the program's start

@@ -8,6 +8,7 @@
 #include "core/verify/fields.h"
 #include "core/verify/random_path.h"
 #include "kernels/reference/intersect.h"
+#include "kernels/reference/sample_environment.h"
 #include "kernels/reference/sample_light.h"
 #include "kernels/reference/surface.h"
 
@@ -115,6 +116,14 @@ void start(const Plan& plan, Rng& rng, Path<float>& p) {
   if (rng() % 16 == 0) p.beta_r = p.beta_g = p.beta_b = 0;
 }
 
+// Aims at the light of the path's step.
+void sample_light(const Plan& plan, Path<float>& p) {
+  Path<double> exact = convert_path<double>(p);
+  const bool sky = is_environment(plan, p.step.light);
+  sky ? reference::sample_environment(plan, exact) : reference::sample_light(plan, exact);
+  p = convert_path<float>(exact);
+}
+
 uint32_t random_prim(const Plan& plan, Rng& rng, uint32_t bin) {
   const uint32_t prims = plan.triangles + plan.spheres, first = static_cast<uint32_t>(rng() % prims);
   for (uint32_t i = 0; i < prims; ++i) {
@@ -171,6 +180,15 @@ void fill_emitter_hit(const Plan& plan, Rng& rng, Path<float>& p) {
   if (rng() % 8 == 0) p.pdf = kConnected;
 }
 
+// Often beside a pole, the seam of the map or an axis.
+void fill_sky_ray(const Plan& plan, Rng& rng, Path<float>& p) {
+  start(plan, rng, p);
+  dvec3 axis(0);
+  axis[static_cast<int>(rng() % 3)] = either_sign(rng);
+  set_d(p, rng() % 2 ? random_unit(rng) : glm::normalize(axis + small(rng, 8) * random_unit(rng)));
+  if (rng() % 8 == 0) p.pdf = kConnected;
+}
+
 void fill_shading_point(const Plan& plan, Rng& rng, Path<float>& p) {
   fill_hit(plan, rng, p);
   Path<double> exact = convert_path<double>(p);
@@ -193,12 +211,9 @@ void fill_light_sample(const Plan& plan, Rng& rng, Path<float>& p) {
   fill_shading_point(plan, rng, p);
   const dvec3 s = glm::normalize(dvec3(p.s_x, p.s_y, p.s_z)), d(p.d_x, p.d_y, p.d_z);
   switch (rng() % 4) {
-    case 0: {  // to a light
-      Path<double> exact = convert_path<double>(p);
-      reference::sample_light(plan, exact);
-      p = convert_path<float>(exact);
+    case 0:
+      sample_light(plan, p);
       break;
-    }
     case 1:  // about the mirror direction, where all the reflection of a narrow lobe is
       set_l(p, 0.7 * (d - 2 * glm::dot(d, s) * s + small(rng, 5) * random_unit(rng)));
       break;
@@ -216,9 +231,7 @@ void fill_shadow_ray(const Plan& plan, Rng& rng, Path<float>& p) {
   fill_shading_point(plan, rng, p);
   const dvec3 o(p.o_x, p.o_y, p.o_z);
   if (rng() % 2) {
-    Path<double> exact = convert_path<double>(p);
-    reference::sample_light(plan, exact);
-    p = convert_path<float>(exact);
+    sample_light(plan, p);
   } else {
     set_l(p, (0.5 + unit(rng)) * (hard_target(plan, rng, o) - o));
   }

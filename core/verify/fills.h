@@ -13,6 +13,7 @@ void fill_camera_path(const Plan& plan, std::mt19937& rng, Path<float>& p);
 void fill_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before intersect
 void fill_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before surface
 void fill_emitter_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);
+void fill_sky_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);        // before environment
 void fill_shading_point(const Plan& plan, std::mt19937& rng, Path<float>& p);  // after surface, of any material
 void fill_rough_point(const Plan& plan, std::mt19937& rng, Path<float>& p);    // before connect_sphere
 void fill_light_sample(const Plan& plan, std::mt19937& rng, Path<float>& p);   // before light_<material>

@@ -7,11 +7,13 @@
 #include "core/verify/fills.h"
 #include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
+#include "kernels/reference/environment.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
 #include "kernels/reference/intersect.h"
 #include "kernels/reference/occlude.h"
 #include "kernels/reference/roulette.h"
+#include "kernels/reference/sample_environment.h"
 #include "kernels/reference/sample_hemisphere.h"
 #include "kernels/reference/sample_light.h"
 #include "kernels/reference/shade_diffuse.h"
@@ -31,14 +33,19 @@ void generate_batch(const Plan& plan, const PathState& s, Range range) {
   generate(plan, with_batch, range);
 }
 
-// Nothing on plans without connections.
-template <Kernel* kKernel>
-void if_connected(const Plan& plan, const PathState& s, Range range) {
-  if (connects(plan)) kKernel(plan, s, range);
+// What kernels need that not every plan and step has.
+bool is_light(const Plan& plan, const Step& step) { return !is_environment(plan, step.light); }
+bool connected(const Plan& plan, const Step& step) { return connects(plan) && is_light(plan, step); }
+bool has_sky(const Plan& plan, const Step&) { return !plan.environment.empty(); }
+
+// Does nothing where it is missing.
+template <auto kCondition, Kernel* kKernel>
+void run_if(const Plan& plan, const PathState& s, Range range) {
+  if (kCondition(plan, s.step)) kKernel(plan, s, range);
 }
-template <auto kTwin>
-void twin_if_connected(const Plan& plan, Path<double>& p) {
-  if (connects(plan)) kTwin(plan, p);
+template <auto kCondition, auto kTwin>
+void twin_if(const Plan& plan, Path<double>& p) {
+  if (kCondition(plan, p.step)) kTwin(plan, p);
 }
 
 template <Bin kBin, auto kFill>
@@ -55,11 +62,16 @@ const KernelCase kCases[] = {
     {"generate", generate_batch, twin::generate<double>, kGenerateBounds, "", fill_camera_path},
     {"intersect", intersect, twin::intersect<double>, kIntersectBounds, "o d", fill_ray},
     {"emission", emission, twin::emission<double>, kEmissionBounds, "t o d pdf", fill_emitter_hit},
+    {"environment", run_if<has_sky, environment>, twin_if<has_sky, twin::environment<double>>, kEnvironmentBounds,
+     "d pdf", fill_sky_ray},
     {"surface", surface, twin::surface<double>, kSurfaceBounds, "t u v o d", fill_hit},
-    {"sample_light", sample_light, twin::sample_light<double>, kSampleLightBounds, "o n", fill_shading_point},
+    {"sample_light", run_if<is_light, sample_light>, twin_if<is_light, twin::sample_light<double>>, kSampleLightBounds,
+     "o n", fill_shading_point},
+    {"sample_environment", run_if<has_sky, sample_environment>, twin_if<has_sky, twin::sample_environment<double>>,
+     kSampleEnvironmentBounds, "", fill_shading_point},
     {"sample_hemisphere", sample_hemisphere, twin::sample_hemisphere<double>, kSampleHemisphereBounds, "d s",
      fill_shading_point},
-    {"connect_sphere", if_connected<connect_sphere>, twin_if_connected<twin::connect_sphere<double>>,
+    {"connect_sphere", run_if<connected, connect_sphere>, twin_if<connected, twin::connect_sphere<double>>,
      kConnectSphereBounds, "o n", fill_rough_point},
     {"light_diffuse", light_diffuse, twin::light_diffuse<double>, kLightDiffuseBounds, "d s l l_pdf",
      fill_of_bin<kDiffuse, kLight>},
@@ -73,7 +85,7 @@ const KernelCase kCases[] = {
      fill_of_bin<kMirror, kShade>},
     {"shade_glass", shade_glass, twin::shade_glass<double>, kShadeGlassBounds, "o d n s", fill_of_bin<kGlass, kShade>},
     {"occlude", occlude, twin::occlude<double>, kOccludeBounds, "o n l", fill_shadow_ray},
-    {"occlude_connection", if_connected<occlude_connection>, twin_if_connected<twin::occlude_connection<double>>,
+    {"occlude_connection", run_if<connected, occlude_connection>, twin_if<connected, twin::occlude_connection<double>>,
      kOccludeConnectionBounds, "o n l m", fill_connection},
     {"gather_emission", gather_emission, twin::gather_emission<double>, kGatherEmissionBounds, "o n l",
      fill_shadow_ray},

@@ -57,7 +57,7 @@ Scene flat_scene() {
 std::vector<Plan> verification_plans() {
   Settings lens;
   lens.lens_radius = 0.1, lens.focal_distance = 3;
-  return {make_plan(rich_scene(), {}), make_plan(flat_scene(), lens)};
+  return {make_plan(rich_scene(), {}), make_plan(flat_scene(), lens), make_plan(test::test_outdoors(), {})};
 }
 
 std::vector<Settings> verification_settings() {

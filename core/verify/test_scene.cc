@@ -1,5 +1,6 @@
 #include "core/verify/test_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -106,6 +107,27 @@ Scene test_box() {
   camera.to_world[3] = {0, -3.5, 0.75, 1};
   camera.xfov = 0.8;
   scene.cameras = {camera};
+  return scene;
+}
+
+Image test_sky() {
+  Image sky(24, 12);
+  for (uint32_t y = 0; y < sky.height; ++y) {
+    for (uint32_t x = 0; x < sky.width; ++x) {
+      float* rgb = sky.pixel(x, y);
+      const float height = 1 - static_cast<float>(y) / 6;
+      if (y < 6) rgb[0] = 0.8f - 0.6f * height, rgb[1] = 0.8f - 0.4f * height, rgb[2] = 1;
+      if (y >= 10) rgb[0] = 0.2f, rgb[1] = x % 2 == 0 ? 0.1f : 0.15f, rgb[2] = 0.05f;
+    }
+  }
+  std::fill_n(sky.pixel(5, 3), 3, 50.0f);
+  return sky;
+}
+
+Scene test_outdoors() {
+  Scene scene = test_box();
+  std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.name == "ceiling" || mesh.name == "light"; });
+  scene.environment = test_sky();
   return scene;
 }
 

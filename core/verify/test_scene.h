@@ -22,6 +22,13 @@ enum TestMaterial : uint32_t {
 // light (one parallelogram) and a triangular light.
 Scene test_scene();
 
+// A map of the sky, 24 x 12 texels: brighter towards the horizon, black below but for some light from the ground, and a sun of
+// one texel, white, in column 5 of row 3.
+Image test_sky();
+
+// The box without its mesh, ceiling and large light, under that sky.
+Scene test_outdoors();
+
 // The same box with the mesh replaced by nothing: walls and spheres only.
 Scene test_box();
 

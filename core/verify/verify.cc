@@ -60,7 +60,7 @@ std::vector<Plan> all_plans() {
 
 Step step_of(const Plan& plan, uint32_t i) {
   return {.bounce = i % (plan.settings.max_depth + 2),
-          .light = i % static_cast<uint32_t>(plan.lights.size()),
+          .light = i % sampled_lights(plan),
           .light_sample = i / 2 % plan.settings.light_samples};
 }
 

@@ -100,13 +100,15 @@ Hit<T> closest_hit(const Plan& plan, const Vec3<T>& o, const Vec3<T>& d) {
 template <class T>
 void intersect(const Plan& plan, Path<T>& p) {
   Hit<T> hit;
-  if (p.beta_r > 0 || p.beta_g > 0 || p.beta_b > 0) hit = closest_hit(plan, LANEWISE_VEC3(p, o), LANEWISE_VEC3(p, d));
+  const bool alive = p.beta_r > 0 || p.beta_g > 0 || p.beta_b > 0;
+  if (alive) hit = closest_hit(plan, LANEWISE_VEC3(p, o), LANEWISE_VEC3(p, d));
   p.t = hit.t;
   p.u = hit.u;
   p.v = hit.v;
   p.prim = hit.prim;
-  p.bin = hit.prim == kNoPrim ? uint32_t{kFinished} : plan.prim_bin[hit.prim];
-  if (p.step.bounce >= plan.settings.max_depth && p.bin != kEmitter) p.bin = kFinished;
+  const uint32_t missed = alive && !plan.environment.empty() ? kSky : kFinished;
+  p.bin = hit.prim == kNoPrim ? missed : plan.prim_bin[hit.prim];
+  if (p.step.bounce >= plan.settings.max_depth && p.bin < kSurfaceBins) p.bin = kFinished;
 }
 
 }  // namespace lanewise::reference

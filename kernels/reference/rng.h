@@ -85,10 +85,13 @@ Random4<T> draw_direction(const Plan& plan, const Path<T>& p) {
 }
 
 template <class T>
+Random4<T> draw_environment(const Plan& plan, const Path<T>& p) {
+  return draw_random(plan, p, light_set(plan, p.step));
+}
+
+template <class T>
 Random4<T> draw_light(const Plan& plan, const Path<T>& p) {
-  if (!is_first_light_sample(p.step)) {
-    return draw_random(plan, p, kSetLight + p.step.light * plan.settings.light_samples + p.step.light_sample);
-  }
+  if (!is_first_light_sample(p.step)) return draw_random(plan, p, light_set(plan, p.step));
   Random4<T> random = draw_random(plan, p, kSetPath);
   random.u[kDrawPatch] = draw_random(plan, p, kSetChoice).u[kDrawFirstPatch];
   return random;

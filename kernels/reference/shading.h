@@ -23,7 +23,9 @@ template <class T>
 Vec3<T> light_weight(const Plan& plan, const Path<T>& p, T bsdf_pdf) {
   const Direct direct = plan.settings.direct;
   const T n_pdf = static_cast<T>(plan.settings.light_samples) * p.l_pdf;
-  const Vec3<T> radiance = direct == Direct::kHemisphere ? Vec3<T>(1) : vec3<T>(plan.lights[p.step.light].radiance);
+  const Vec3<T> radiance = direct == Direct::kHemisphere        ? Vec3<T>(1)
+                           : is_environment(plan, p.step.light) ? LANEWISE_RGB(p, c)
+                                                                : vec3<T>(plan.lights[p.step.light].radiance);
   if (p.step.connection) return bsdf_pdf <= T(kMostConnectedPdf) ? radiance / n_pdf : Vec3<T>(0);
   const T ratio = direct == Direct::kMis ? bsdf_pdf / n_pdf : 0;
   return radiance / (n_pdf * (1 + ratio * ratio));

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "tests/kernel_harness.h"
 #include "tests/scene_paths.h"
 #include "tests/shading_harness.h"
+#include "tests/statistics/known_pixels.h"
 #include "tests/statistics/lobes.h"
 
 TEST_SUITE_BEGIN("statistics");
@@ -21,44 +21,15 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-#ifdef NDEBUG
-constexpr uint32_t kSpp = 128;
-#else
-constexpr uint32_t kSpp = 32;
-#endif
-
-Settings small() {
-  Settings settings;
-  settings.width = 16, settings.height = 12, settings.spp = kSpp, settings.threads = 1;
-  return settings;
-}
-
-Camera look(const dvec3& eye, const dvec3& target, double xfov) {
-  Camera camera;
-  const dvec3 up = std::abs(glm::normalize(target - eye).z) < 0.99 ? dvec3(0, 0, 1) : dvec3(0, 1, 0);
-  camera.to_world = glm::inverse(glm::lookAt(eye, target, up));
-  camera.xfov = xfov;
-  return camera;
-}
+using test::diffuse;
+using test::look;
+using test::pixels_p;
 
 Material emitter(double radiance) {
   Material m;
   m.kind = Material::Kind::kEmission;
   m.radiance = dvec3(radiance);
   return m;
-}
-
-Material diffuse(const dvec3& reflectance) {
-  Material m;
-  m.reflectance = reflectance;
-  return m;
-}
-
-// p that the pixels' channel has this mean; what is within rounding of it is it.
-double pixels_p(const Image& image, size_t channel, double mean) {
-  test::Moments pixels;
-  for (size_t i = channel; i < image.rgb.size(); i += 3) pixels.add(image.rgb[i]);
-  return test::t_test_p(pixels, mean, 2e-6 * mean);
 }
 
 // A lamp of this radius in the middle of a diffuse sphere of radius 1, lighting it with irradiance pi; seen from between
@@ -136,7 +107,7 @@ TEST_CASE("furnace: walls of albedo a around a lamp reach a / (1 - a), at every 
   test::Family family;
   const dvec3 albedos[] = {{0.5, 0.75, 0.9}, {0.25, 0.95, 0.1}};
   for (const dvec3& albedo : albedos) {
-    Plan plan = make_plan(furnace(albedo), small());
+    Plan plan = make_plan(furnace(albedo), test::small_picture());
     for (const uint32_t depth : {0u, 1u, 2u, 3u, 4u, 5u, 100u}) {
       plan.settings.max_depth = depth;
       plan.settings.seed = family.tests();
@@ -155,7 +126,7 @@ TEST_CASE("furnace: walls of albedo a around a lamp reach a / (1 - a), at every 
 TEST_CASE("furnace: every estimator of direct light agrees on the answer") {
   test::Family family;
   for (const Direct direct : {Direct::kMis, Direct::kLight, Direct::kBsdf, Direct::kHemisphere}) {
-    Settings settings = small();
+    Settings settings = test::small_picture();
     settings.direct = direct;
     settings.seed = 7 + family.tests();
     settings.light_samples = 2;
@@ -173,7 +144,7 @@ TEST_CASE("white furnace: mirror, glass and white diffuse vanish, metal shows it
   metal.kind = Material::Kind::kMicrofacet;
   mirror.reflectance = glass.reflectance = dvec3(1);
   metal.eta = metal.k = dvec3(0);  // reflects all
-  Settings settings = small();
+  Settings settings = test::small_picture();
   settings.max_depth = 100;
   const auto add = [&](const std::string& name, const Material& ball, double degrees, double mean) {
     settings.seed = family.tests();
@@ -205,7 +176,7 @@ TEST_CASE("form factors: pixels under polygon lights show Lambert's irradiance")
   for (const auto& [name, corners] : kPolygons) {
     for (const dvec3& point : kPoints) {
       for (const Direct direct : {Direct::kMis, Direct::kLight, Direct::kBsdf, Direct::kHemisphere}) {
-        Settings settings = small();
+        Settings settings = test::small_picture();
         settings.direct = direct;
         settings.max_depth = 1;
         settings.seed = family.tests();
@@ -225,7 +196,7 @@ TEST_CASE("form factors: cos / pdf of light points is Lambert's irradiance, on e
   test::for_each_target([&](const char* target) {
     for (const dvec3& point : kPoints) {
       const auto add = [&](const std::string& name, const Scene& scene, double irradiance) {
-        Settings settings = small();
+        Settings settings = test::small_picture();
         settings.seed = family.tests();
         const Plan plan = make_plan(scene, settings);
         Path<float> path;

@@ -1,0 +1,48 @@
+// Small pictures all of whose pixels expect the same, which is known.
+#pragma once
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/image.h"
+#include "core/scene.h"
+#include "core/settings.h"
+#include "tests/statistics/significance.h"
+
+namespace lanewise::test {
+
+#ifdef NDEBUG
+constexpr uint32_t kKnownSpp = 128;
+#else
+constexpr uint32_t kKnownSpp = 32;
+#endif
+
+inline Settings small_picture() {
+  Settings settings;
+  settings.width = 16, settings.height = 12, settings.spp = kKnownSpp, settings.threads = 1;
+  return settings;
+}
+
+// xfov: in radians.
+inline Camera look(const glm::dvec3& eye, const glm::dvec3& target, double xfov) {
+  Camera camera;
+  const glm::dvec3 up = std::abs(glm::normalize(target - eye).z) < 0.99 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  camera.to_world = glm::inverse(glm::lookAt(eye, target, up));
+  camera.xfov = xfov;
+  return camera;
+}
+
+inline Material diffuse(const glm::dvec3& reflectance) {
+  Material m;
+  m.reflectance = reflectance;
+  return m;
+}
+
+// p that the pixels' channel has this mean; what is within rounding of it is it.
+inline double pixels_p(const Image& image, size_t channel, double mean) {
+  Moments pixels;
+  for (size_t i = channel; i < image.rgb.size(); i += 3) pixels.add(image.rgb[i]);
+  return t_test_p(pixels, mean, 2e-6 * mean);
+}
+
+}  // namespace lanewise::test
