@@ -11,12 +11,15 @@
 namespace lanewise {
 
 const Plan& plan_of(Stage stage) {
-  const auto make = [](Direct direct) {
+  const auto make = [](Direct direct, const Scene& scene) {
     Settings settings;
     settings.width = settings.height = kSide, settings.spp = kSamples, settings.direct = direct;
-    return make_plan(test::test_scene(), settings);
+    return make_plan(scene, settings);
   };
-  static const Plan usual = make(Direct::kMis), hemisphere = make(Direct::kHemisphere);
+  static const Plan usual = make(Direct::kMis, test::test_scene());
+  static const Plan hemisphere = make(Direct::kHemisphere, test::test_scene());
+  static const Plan outdoors = make(Direct::kMis, test::test_outdoors());
+  if (stage == Stage::kEnvironment || stage == Stage::kSampleEnvironment) return outdoors;
   return stage == Stage::kSampleHemisphere || stage == Stage::kGatherEmission ? hemisphere : usual;
 }
 

@@ -7,11 +7,13 @@
 #include "core/plan_connections.h"
 #include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
+#include "kernels/reference/environment.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
 #include "kernels/reference/intersect.h"
 #include "kernels/reference/occlude.h"
 #include "kernels/reference/roulette.h"
+#include "kernels/reference/sample_environment.h"
 #include "kernels/reference/sample_hemisphere.h"
 #include "kernels/reference/sample_light.h"
 #include "kernels/reference/shade_diffuse.h"
@@ -28,8 +30,10 @@ constexpr StageTwin kTwins[] = {
     {Stage::kGenerate, generate, twin::generate<float>},
     {Stage::kIntersect, intersect, twin::intersect<float>},
     {Stage::kEmission, emission, twin::emission<float>},
+    {Stage::kEnvironment, environment, twin::environment<float>},
     {Stage::kSurface, surface, twin::surface<float>},
     {Stage::kSampleLight, sample_light, twin::sample_light<float>},
+    {Stage::kSampleEnvironment, sample_environment, twin::sample_environment<float>},
     {Stage::kSampleHemisphere, sample_hemisphere, twin::sample_hemisphere<float>},
     {Stage::kConnectSphere, connect_sphere, twin::connect_sphere<float>},
     {Stage::kLightDiffuse, light_diffuse, twin::light_diffuse<float>},
@@ -62,6 +66,9 @@ std::vector<Stage> stages_at(const Plan& plan, uint32_t bin, uint32_t bounce) {
       if (connects_at(plan, bounce)) {
         stages.insert(stages.end(), {Stage::kConnectSphere, s.light, Stage::kOccludeConnection});
       }
+      if (!plan.environment.empty()) {
+        stages.insert(stages.end(), {Stage::kSampleEnvironment, s.light, Stage::kOcclude});
+      }
     }
     stages.insert(stages.end(), {s.shade, Stage::kRoulette});
   }
@@ -77,8 +84,12 @@ bool trace_to(const Plan& plan, Stage wanted, uint32_t wanted_bounce, Path<float
     p.step = {.bounce = bounce};
     if (there && wanted == Stage::kIntersect) return true;
     run_twin(plan, Stage::kIntersect, p);
-    if (p.bin >= kSurfaceBins) return there && wanted == Stage::kEmission && p.bin == kEmitter;
+    if (p.bin >= kSurfaceBins) {
+      return there &&
+             ((wanted == Stage::kEmission && p.bin == kEmitter) || (wanted == Stage::kEnvironment && p.bin == kSky));
+    }
     for (const Stage stage : stages_at(plan, p.bin, bounce)) {
+      if (stage == Stage::kSampleEnvironment) p.step.light = sampled_lights(plan) - 1;
       if (there && stage == wanted) return true;
       if (stage == Stage::kConnectSphere) p.step.connection = true;
       run_twin(plan, stage, p);
