@@ -11,38 +11,24 @@ many samples, whose own error is known from its two halves and taken off. Render
 that was cut short goes on where it was. Writes index.html, which needs no other file, with SCENE-mrse.svg (-flip.svg,
 -samples.svg), chart.csv and chart.json beside it.
 """
-import argparse
-import importlib.util
-import os
 import pathlib
 import shlex
 import sys
 import time
 
-for module in ('matplotlib', 'numpy'):
-    if not importlib.util.find_spec(module):
-        sys.exit(f'lanewise: {module} is not installed; tools/setup charts installs it')
+import command
+import kept
+from command import Problem, positive
 
-import chart_renderers
-import chart_store
-import lanewise
-from chart_renderers import ChartError
+command.need('matplotlib', 'numpy')
 
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise ChartError(message.removeprefix('argument ') + '; see lanewise chart --help', 2)
-
-
-def positive(word):
-    if not word.isdigit() or int(word) == 0:
-        raise argparse.ArgumentTypeError(f"'{word}' is not a whole number above 0")
-    return int(word)
+import chart_renderers  # noqa: E402
+import chart_store  # noqa: E402
+import lanewise  # noqa: E402
 
 
 def parse_arguments(words):
-    parser = Parser('lanewise chart', description='Charts error against seconds of rendering.',
-                    epilog=__doc__.partition('\n\n')[2], formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command.parser_of('chart', __doc__)
     parser.add_argument('scenes', nargs='+', metavar='SCENE', help='COLLADA file, or builtin:dense')
     parser.add_argument('--config', action='append', default=[], metavar="'NAME: FLAGS'",
                         help='a configuration: flags of lanewise render; may be repeated [Lanewise:]')
@@ -64,15 +50,11 @@ def parse_arguments(words):
                         help='most scattering events on a path [5]')
     parser.add_argument('-t', '--threads', type=positive, default=2, metavar='N', help='[2]')
     parser.add_argument('--out', type=pathlib.Path, default=pathlib.Path('chart'), metavar='FOLDER', help='[chart]')
-    parser.add_argument('--cache', type=pathlib.Path, default=default_cache(), metavar='FOLDER',
+    parser.add_argument('--cache', type=pathlib.Path, default=kept.default_folder('chart'), metavar='FOLDER',
                         help='for what was measured [%(default)s]')
     parser.add_argument('--minutes', type=float, default=float('inf'), metavar='X',
                         help='begin no render after so long, draw what there is, and go on when run again')
     return parser.parse_args(words)
-
-
-def default_cache():
-    return pathlib.Path(os.environ.get('XDG_CACHE_HOME') or pathlib.Path.home() / '.cache') / 'lanewise' / 'chart'
 
 
 def command_line(words):
@@ -90,38 +72,32 @@ def main():
         args.out.mkdir(parents=True, exist_ok=True)
         store = chart_store.Store(args.cache, time.monotonic() + 60 * args.minutes)
     except OSError as error:
-        raise ChartError(f'{error.filename}: {error.strerror}') from None
+        raise Problem(f'{error.filename}: {error.strerror}') from None
     subjects = [chart_renderers.Subject(scene, args.view, *args.resolution, args.max_depth, args.threads)
                 for scene in args.scenes]
     names = [subject.name for subject in subjects]
     if len(set(names)) < len(names):
-        raise ChartError('two scenes have the same name, and so would their charts', 2)
+        raise Problem('two scenes have the same name, and so would their charts', 2)
     renderers = chart_renderers.configurations(args) + chart_renderers.peers(args)
     import chart_results  # here, for matplotlib takes longer than all the checks above
-    command, notes, sections = command_line(sys.argv[1:]), [], []
+    line, notes, sections = command_line(sys.argv[1:]), [], []
     if not store.has_flip:
         notes.append('No FLIP: this lanewise compare has no --metric flip.')
     try:
         for subject in subjects:
-            sections.append(chart_results.section_of(store, subject, args, renderers, command, notes))
-    except chart_store.OutOfTime:
+            sections.append(chart_results.section_of(store, subject, args, renderers, line, notes))
+    except kept.OutOfTime:
         pass
     if store.cut_short:
         notes.append('Not all is measured yet: the time was up. The same command goes on where this ended.')
     for note in notes:
         print(note)
     if not sections:
-        raise ChartError('out of time before there was anything to draw; the same command goes on where this ended')
-    saved = {'command': command, 'machine': lanewise.machine(), 'notes': notes,
+        raise Problem('out of time before there was anything to draw; the same command goes on where this ended')
+    saved = {'command': line, 'machine': lanewise.machine(), 'notes': notes,
              'versions': {r.name: r.version for r in renderers}}
     chart_results.write(args.out, sections, store.rendered, saved)
 
 
 if __name__ == '__main__':
-    try:
-        sys.exit(main())
-    except ChartError as problem:
-        print(f'lanewise: {problem}', file=sys.stderr)
-        sys.exit(problem.code)
-    except KeyboardInterrupt:
-        sys.exit('lanewise: stopped; the same command goes on where this ended')
+    command.run(main)

@@ -1,14 +1,12 @@
 """Pictures for the page of `lanewise chart`: what each renderer makes of the same time, and in what time it comes to
 the same error; cut out where errors are greatest, all at the exposure of `lanewise render`."""
-import base64
 import dataclasses
-import io
 
 import numpy as np
-from matplotlib import image
 
 import chart_summary
 import picture_error
+from page import encoded, to_srgb, uri
 
 PARTS = 6  # a crop is a sixth of the picture's width and height
 REGIONS = 2
@@ -51,18 +49,12 @@ def compare(store, subject, reference, renderers, curves):
     comparisons = []
     for title, found in shots:
         crops = [Crop(name, f'{point.samples} samples, {point.seconds:.3g} s, MRSE {point.mrse:.3g}',
-                      [_uri(to_srgb(picture[region])) for region in regions]) for name, picture, point in found]
+                      [uri(encoded(to_srgb(picture[region]))) for region in regions]) for name, picture, point in found]
         truth = Crop('reference', f'{reference.samples} samples',
-                     [_uri(to_srgb(reference.picture[region])) for region in regions])
+                     [uri(encoded(to_srgb(reference.picture[region]))) for region in regions])
         comparisons.append(Comparison(title, [truth, *crops]))
-    return _uri(_marked(to_srgb(reference.picture), regions), 'jpeg', quality=92), comparisons
-
-
-def to_srgb(picture):
-    """8 bits, as core/image_io.cc writes them."""
-    x = np.clip(picture, 0, 1)
-    x = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)
-    return (255 * x + 0.5).astype(np.uint8)
+    marked = encoded(_marked(to_srgb(reference.picture), regions), 'jpeg', quality=92)
+    return uri(marked, 'jpeg'), comparisons
 
 
 def _worst_regions(pictures, reference):
@@ -85,9 +77,3 @@ def _marked(pixels, regions):
         pixels[rows, columns] = colour
         pixels[rows, columns][2:-2, 2:-2] = inner
     return pixels
-
-
-def _uri(pixels, kind='png', **options):
-    file = io.BytesIO()
-    image.imsave(file, np.ascontiguousarray(pixels), format=kind, pil_kwargs=options)
-    return f'data:image/{kind};base64,' + base64.b64encode(file.getvalue()).decode()

@@ -4,40 +4,16 @@ import html
 import math
 
 import chart_summary
+from page import chart, document, picture, table
 
-TEMPLATE = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Lanewise: error against time</title><style>
-body { font: 16px/1.5 system-ui, sans-serif; color: #111827; background: #fff; }
-body { max-width: 1240px; margin: 0 auto; padding: 16px; }
-h1 { font-size: 1.6em; line-height: 1.2; margin: .3em 0; } h2 { font-size: 1.25em; margin: 2em 0 .3em; }
-h3 { font-size: 1em; margin: 1.6em 0 .5em; } p { max-width: 75ch; margin: .5em 0; }
-code { font: .85em/1.5 ui-monospace, monospace; background: #f3f4f6; padding: 2px 5px; overflow-wrap: anywhere; }
-figure { margin: 0; min-width: 0; } figcaption, small { font-size: .8em; color: #4b5563; line-height: 1.35; }
-.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 16px 24px; }
+STYLE = """.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 16px 24px; }
 .charts > * { max-width: 620px; min-width: 0; } td b { white-space: nowrap; }
 .charts svg, .reference img { width: 100%; height: auto; display: block; }
 .reference { max-width: 480px; margin-top: 1.5em; }
 .crops { display: grid; grid-template-columns: repeat(auto-fill, minmax(150px, 1fr)); gap: 12px; }
 .crops img { width: 100%; display: block; margin-bottom: 3px; image-rendering: pixelated; box-sizing: border-box; }
-.crops img:nth-child(1) { border: 2px solid #facc15; } .crops img:nth-child(2) { border: 2px solid #22d3ee; }
-table { border-collapse: collapse; margin: 0 0 1.5em; font-size: .9em; font-variant-numeric: tabular-nums; }
-th, td { text-align: right; padding: 5px 14px 5px 0; border-bottom: 1px solid #e5e7eb; vertical-align: top; }
-th { font-weight: 600; vertical-align: bottom; max-width: 9em; } th:first-child, td:first-child { text-align: left; }
-@media (max-width: 720px) {
-  thead { display: none; } table, tbody, tr { display: block; } table { width: 100%; }
-  tr { border-bottom: 1px solid #d1d5db; padding: 6px 0; }
-  td, td:first-child { display: flex; justify-content: space-between; gap: 16px; border: 0; padding: 1px 0; }
-  td::before { content: attr(data-label); color: #4b5563; text-align: left; }
-  td:first-child { display: block; font-weight: 600; }
-  td:first-child::before { margin-right: .4em; font-weight: normal; } td > span { text-align: right; }
-  .crops { grid-template-columns: repeat(2, minmax(0, 1fr)); }
-}
-</style></head><body>
-<h1>Error against seconds of rendering</h1>
-BODY
-</body></html>
-"""
+.crops img:nth-child(1) { border: 2px solid #facc15; } .crops img:nth-child(2) { border: 2px solid #22d3ee; }"""
+NARROW = '.crops { grid-template-columns: repeat(2, minmax(0, 1fr)); }'
 
 
 @dataclasses.dataclass
@@ -69,7 +45,7 @@ def page(sections, versions, machine, command, notes):
                     'off it.</small></p>')
     body += [f'<p><small>{esc(note)}</small></p>' for note in notes]
     body += [_section(s) for s in sections]
-    return TEMPLATE.replace('BODY', '\n'.join(body))
+    return document('Lanewise: error against time', 'Error against seconds of rendering', body, STYLE, NARROW)
 
 
 def headline(section):
@@ -94,17 +70,16 @@ def _section(s):
     said = html.escape(headline(s), quote=False)
     lines = [f'<h2>{html.escape(s.subject.name)}</h2>', f'<p><b>{said}</b></p>' if said else '',
              '<div class="charts">',
-             *(f'<figure class="chart">{svg.replace("<svg", "<svg role=" + chr(34) + "img" + chr(34), 1)}</figure>'
-               for svg in s.charts.values())]
+             *map(chart, s.charts.values())]
     lines += [f'<div>{tables(s.curves, s.reference.mrse)}</div>', '</div>']
     if s.picture:
-        lines.append(f'<figure class="reference">{_image(s.picture, "the reference")}<figcaption>{reference} The crops '
+        lines.append(f'<figure class="reference">{picture(s.picture, "the reference")}<figcaption>{reference} The crops '
                      'below are from where the errors are greatest.</figcaption></figure>')
     else:
         lines.append(f'<p><small>{reference}</small></p>')
     for comparison in s.comparisons:
         lines += [f'<h3>{html.escape(comparison.title)}</h3><div class="crops">',
-                  *(f'<figure>{"".join(_image(uri, crop.name) for uri in crop.images)}'
+                  *(f'<figure>{"".join(picture(uri, crop.name) for uri in crop.images)}'
                     f'<figcaption><b>{html.escape(crop.name)}</b><br>{html.escape(crop.note)}</figcaption></figure>'
                     for crop in comparison.crops), '</div>']
     return '\n'.join(lines)
@@ -116,7 +91,7 @@ def tables(curves, reference_mrse):
     for c in curves:
         slope, after = chart_summary.slope(c, reference_mrse), chart_summary.error_after(c, 1)
         rows.append([html.escape(c.name), f'{c.samples[-1] / c.last()[0]:.3g}', estimate(after), estimate(slope)])
-    lines = [_table(['', 'samples a pixel and second', 'MRSE after 1 s', 'MRSE ∝ samples to the'], rows)]
+    lines = [table(['', 'samples a pixel and second', 'MRSE after 1 s', 'MRSE ∝ samples to the'], rows)]
     ours, peers = [c for c in curves if not c.is_peer], [c for c in curves if c.is_peer]
     if ours and peers:
         rows = []
@@ -127,16 +102,8 @@ def tables(curves, reference_mrse):
                 ratio, needed = (html.escape(estimate(e)) for e in chart_summary.times_sooner(c, peer))
                 cells.append(f'{needed} s: <b>{ratio} ×</b> sooner')
             rows.append(cells)
-        lines.append(_table(['the error of', 'MRSE', 'takes it', *(f'takes {c.name}' for c in ours)], rows))
+        lines.append(table(['the error of', 'MRSE', 'takes it', *(f'takes {c.name}' for c in ours)], rows))
     return '\n'.join(lines)
-
-
-def _table(head, rows):
-    """Cells are HTML, heads are text. On narrow screens each row becomes a card."""
-    head = [html.escape(h) for h in head]
-    body = (''.join(f'<td data-label="{h}"><span>{cell}</span></td>' for h, cell in zip(head, row)) for row in rows)
-    return ('<table><thead><tr>' + ''.join(f'<th>{h}</th>' for h in head) + '</tr></thead><tbody>'
-            + '\n'.join(f'<tr>{cells}</tr>' for cells in body) + '</tbody></table>')
 
 
 def estimate(e):
@@ -148,7 +115,3 @@ def estimate(e):
         places = max(0, 1 - math.floor(math.log10(e.error)))
         text = f'{e.value:.{places}f} ± {e.error:.{places}f}'
     return f'{e.bound} {text}'.strip().replace('-', '−')
-
-
-def _image(uri, name):
-    return f'<img src="{uri}" alt="{html.escape(name)}">'

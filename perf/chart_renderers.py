@@ -12,6 +12,7 @@ import sys
 import tempfile
 
 import lanewise
+from command import Problem
 
 sys.path.append(str(pathlib.Path(__file__).with_name('peers')))
 import collada  # noqa: E402
@@ -27,14 +28,6 @@ PEERS = {'mitsuba-llvm': ('mitsuba llvm_ad_rgb multijitter', 'Mitsuba 3 llvm'),
 # Flags of `lanewise render` that the chart itself gives.
 TAKEN = {'-s', '--spp', '--seed', '-r', '--resolution', '-f', '--output', '--stats', '-t', '--threads', '-m',
          '--max-depth', '-c', '--camera-file', '-p', '--crop', '--view', '--normals', '-q', '--quiet', '--rate'}
-
-
-class ChartError(Exception):
-    """One line for the user; code: the exit code."""
-
-    def __init__(self, text, code=1):
-        super().__init__(text)
-        self.code = code
 
 
 class Subject:
@@ -96,7 +89,7 @@ class PeerRenderer:
         try:
             return self._render(subject, samples, seed)
         except RuntimeError as error:
-            raise ChartError(f'{self.name}: {" ".join(str(error).split())}') from None
+            raise Problem(f'{self.name}: {" ".join(str(error).split())}') from None
 
     def _render(self, subject, samples, seed):
         if subject is not self.subject:
@@ -116,7 +109,7 @@ def attempt(scene, flags, what=''):
         command = [lanewise.PROGRAM, 'render', scene, '-q', '-f', f'{folder}/picture.pfm', '-r', 8, 6, '-s', 1, *flags]
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise ChartError(what + done.stderr.strip().removeprefix('lanewise: '), done.returncode)
+        raise Problem(what + done.stderr.strip().removeprefix('lanewise: '), done.returncode)
 
 
 def configurations(args):
@@ -129,12 +122,12 @@ def configurations(args):
         try:
             flags = shlex.split(text)
         except ValueError as error:
-            raise ChartError(f'{where}: {error}', 2) from None
+            raise Problem(f'{where}: {error}', 2) from None
         for flag in flags:
             if flag in TAKEN:
-                raise ChartError(f'{where}: {flag} is for lanewise chart to choose', 2)
+                raise Problem(f'{where}: {flag} is for lanewise chart to choose', 2)
         if name in (r.name for r in found):
-            raise ChartError(f'{where}: there is a configuration of that name', 2)
+            raise Problem(f'{where}: there is a configuration of that name', 2)
         attempt(args.scenes[0], flags, f'{where}: ')
         found.append(Configuration(name, flags, args.samples))
     return found
@@ -143,7 +136,7 @@ def configurations(args):
 def _split(text):
     name, colon, flags = text.partition(':')
     if not colon or not name.strip():
-        raise ChartError(f"--config '{text}': is not NAME: FLAGS", 2)
+        raise Problem(f"--config '{text}': is not NAME: FLAGS", 2)
     return name.strip(), flags
 
 
@@ -151,9 +144,9 @@ def _read_file(path):
     try:
         configs = json.loads(path.read_text())
     except (OSError, ValueError) as error:
-        raise ChartError(f'{path}: {getattr(error, "strerror", None) or error}') from None
+        raise Problem(f'{path}: {getattr(error, "strerror", None) or error}') from None
     if not isinstance(configs, dict) or not all(isinstance(flags, str) for flags in configs.values()):
-        raise ChartError(f'{path}: is not an object of names and flags, {{"NAME": "FLAGS", ...}}')
+        raise Problem(f'{path}: is not an object of names and flags, {{"NAME": "FLAGS", ...}}')
     return configs
 
 

@@ -9,7 +9,8 @@ import chart_draw
 import chart_page
 import chart_store
 import chart_summary
-from chart_renderers import ChartError
+from command import Problem
+from kept import OutOfTime, write as write_file
 from svg_text import HEADER
 
 
@@ -22,7 +23,7 @@ def _measure(store, subject, reference, renderers, seeds):
             for samples in rungs:
                 points += [store.point(subject, reference, renderer, samples, seed)
                            for renderer in renderers if samples in renderer.samples]
-    except chart_store.OutOfTime:
+    except OutOfTime:
         pass
     return points
 
@@ -37,9 +38,9 @@ def section_of(store, subject, args, renderers, command, notes):
     curves, of_flip = ([c for renderer in renderers if (c := chart_summary.curve(renderer, points, what))]
                        for what in ('mrse', 'flip'))
     if not curves:
-        raise chart_store.OutOfTime
+        raise OutOfTime
     if all((c.error.mean(1) <= 0).all() for c in curves):
-        raise ChartError(f'{subject.name}: all errors are lost in the reference\'s own; --reference takes more samples')
+        raise Problem(f'{subject.name}: all errors are lost in the reference\'s own; --reference takes more samples')
 
     def draw(kind, *what):
         return chart_draw.draw(subject.name, chart_draw.KINDS[kind], *what)
@@ -52,7 +53,7 @@ def section_of(store, subject, args, renderers, command, notes):
     drawn = [r for r in renderers if any(c.name == r.name for c in curves)]
     try:
         section.picture, section.comparisons = chart_crops.compare(store, subject, reference, drawn, curves)
-    except chart_store.OutOfTime:
+    except OutOfTime:
         pass
     return section
 
@@ -62,16 +63,16 @@ def write(out, sections, rendered, saved):
     out.mkdir(parents=True, exist_ok=True)
     for s in sections:
         for name, svg in s.charts.items():
-            chart_store.write(out / f'{s.subject.name}-{name}.svg', HEADER + svg)
+            write_file(out / f'{s.subject.name}-{name}.svg', HEADER + svg)
     rows = [(s.subject.name, *dataclasses.astuple(p)) for s in sections for p in s.points]
     file = io.StringIO(newline='')
     csv.writer(file, lineterminator='\n').writerows(
         [('scene', *(f.name for f in dataclasses.fields(chart_store.Point))), *rows])
-    chart_store.write(out / 'chart.csv', file.getvalue())
+    write_file(out / 'chart.csv', file.getvalue())
     scenes = {s.subject.name: {
         'reference': {'samples': s.reference.samples, 'mrse': s.reference.mrse, 'seconds': s.reference.seconds},
         'says': chart_page.headline(s),
         'renderers': chart_summary.figures(s.curves, s.reference.mrse)} for s in sections}
-    chart_store.write(out / 'chart.json', json.dumps({**saved, 'scenes': scenes}, indent=1) + '\n')
-    chart_store.write(out / 'index.html', chart_page.page(sections, **saved))
+    write_file(out / 'chart.json', json.dumps({**saved, 'scenes': scenes}, indent=1) + '\n')
+    write_file(out / 'index.html', chart_page.page(sections, **saved))
     print(f'{out / "index.html"}: {sum(len(s.charts) for s in sections)} charts, {rendered} renders')

@@ -11,7 +11,6 @@ void add_render_command(CLI::App& app, const std::string& command_line);
 void add_profile_command(CLI::App& app, const std::string& command_line);
 void add_plan_command(CLI::App& app, const std::string& command_line);
 void add_compare_command(CLI::App& app);
-void add_chart_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 
 }  // namespace lanewise

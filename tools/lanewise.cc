@@ -10,6 +10,7 @@
 #include "core/types.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
+#include "tools/script_command.h"
 #include "tools/version.h"
 
 namespace lanewise {
@@ -30,7 +31,7 @@ void run(int argc, char** argv) {
   add_profile_command(app, quoted_command_line(argc, argv));
   add_plan_command(app, quoted_command_line(argc, argv));
   add_compare_command(app);
-  add_chart_command(app);
+  add_script_command(app, "chart", "Chart error against seconds of rendering, beside other renderers");
   add_verify_command(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {

@@ -1,4 +1,5 @@
-// `lanewise chart`: measuring and drawing are perf/chart.py's; this finds it and hands over to it.
+#include "tools/script_command.h"
+
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,7 +11,6 @@
 #include <vector>
 
 #include "core/types.h"
-#include "tools/commands.h"
 
 namespace lanewise {
 namespace {
@@ -27,20 +27,21 @@ fs::path own_path() {
 }
 
 // In the checkout that this was built from, or installed beside the program.
-fs::path find_script(const fs::path& program) {
-  const fs::path places[] = {fs::path(LANEWISE_SOURCE_DIR) / "perf/chart.py",
-                             program.parent_path().parent_path() / "share/lanewise/perf/chart.py"};
+fs::path find_script(const fs::path& program, const std::string& name) {
+  const std::string script = "perf/" + name + ".py";
+  const fs::path places[] = {fs::path(LANEWISE_SOURCE_DIR) / script,
+                             program.parent_path().parent_path() / "share/lanewise" / script};
   for (const fs::path& path : places) {
     if (fs::exists(path)) return path;
   }
-  throw Error(places[0].string() + ": is not there; lanewise chart needs the scripts in perf/");
+  throw Error(places[0].string() + ": is not there; lanewise " + name + " needs the scripts in perf/");
 }
 
-void run_chart(const std::vector<std::string>& arguments) {
+void run_script(const std::string& name, const std::vector<std::string>& arguments) {
   const fs::path program = own_path();
-  const std::string script = find_script(program).string();
+  const std::string script = find_script(program, name).string();
   if (::access(kPython, X_OK) != 0) {
-    throw Error(std::string(kPython) + ": is not there; tools/setup charts installs what lanewise chart needs");
+    throw Error(std::string(kPython) + ": is not there; tools/setup charts installs what lanewise " + name + " needs");
   }
   ::setenv("LANEWISE_BINARY", program.c_str(), 1);  // the program that is measured is this one
   std::vector<char*> argv = {const_cast<char*>(kPython), const_cast<char*>(script.c_str())};
@@ -53,13 +54,13 @@ void run_chart(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-void add_chart_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("chart", "Chart error against seconds of rendering, beside other renderers");
+void add_script_command(CLI::App& app, const std::string& name, const std::string& description) {
+  CLI::App* command = app.add_subcommand(name, description);
   command->group("Commands");
   // Every argument, --help too, is the script's.
   command->set_help_flag();
   command->prefix_command();
-  command->callback([command] { run_chart(command->remaining()); });
+  command->callback([name, command] { run_script(name, command->remaining()); });
 }
 
 }  // namespace lanewise
