@@ -3,9 +3,13 @@ import json
 
 import lanewise
 import page
+import replay_claim_alpha
+import replay_claim_depth
+import replay_claim_noise
 import replay_page
 import replay_pictures
 from kept import write as write_file
+from replay_claims import Lab
 from replay_render import Progress
 
 
@@ -21,7 +25,11 @@ def render_all(studio, topics):
 
 
 def measure_claims(studio, place):
-    return []
+    """In the write-ups' order; without those that have no scene."""
+    lab = Lab(studio, place)
+    measures = (replay_claim_noise.fireflies, replay_claim_noise.importance, replay_claim_depth.depth_needed,
+                replay_claim_depth.path_lengths, replay_claim_alpha.darker_and_sharper)
+    return [claim for measure in measures if (claim := measure(lab))]
 
 
 def write(out, topics, rendered, claims, command, notes):

@@ -194,9 +194,9 @@ void check_shows(Room& room, uint32_t k, const std::function<std::optional<Ray>(
   REQUIRE(pixels.size() >= 10);
   CAPTURE(pixels.size());
   if (!kTellMeans) return;
-  CHECK(found / expected > 0.9);
-  CHECK(found / expected < 1.25);  // light that comes otherwise in as many scatterings
-  CHECK(apart / expected < 0.35);
+  CHECK(found / expected > 0.97);
+  CHECK(found / expected < 1.06);  // light that comes otherwise in as many scatterings
+  CHECK(apart / expected < 0.1);
 }
 
 void check_depth_0(Room& room) {

@@ -1,0 +1,57 @@
+"""Darker and sharper at lower alpha: the dragon's mean luminance, and how much of it is in differences of neighbours."""
+import subprocess
+
+import numpy as np
+
+import lanewise
+import replay_claim_draw
+from replay_claims import CONDITION, FAILS, HOLDS, Claim, luminance
+
+ALPHAS = ['0.005', '0.05', '0.25', '0.5']
+MODELS = {'exact': '', 'course': ' --model course'}
+
+
+def darker_and_sharper(lab):
+    scene = lab.scene('CBdragon_microfacet_au', 'cornell_metal')
+    help_text = subprocess.run([lanewise.PROGRAM, 'render', '--help'], capture_output=True, text=True, check=True).stdout
+    models = {name: flags for name, flags in MODELS.items() if not flags or '--model' in help_text}
+    # By direct light two metals differ where the figure is, and nothing else does.
+    silver, chromium = (lab.render(scene, f'-m 1 --alpha 0.5 --metal {metal}', 4)[0] for metal in ('Ag', 'Cr'))
+    figure = (silver != chromium).any(2)
+    bright = {name: [float(luminance(lab.render(scene, f'-l 4 -m 5 --alpha {alpha}{flags}', 64)[0])[figure].mean())
+                     for alpha in ALPHAS] for name, flags in models.items()}
+    sharp = [_sharpness(*(lab.render(scene, f'-l 4 -m 5 --alpha {alpha}{seed}', 64)[0] for seed in ('', ' --seed 1')), figure)
+             for alpha in ALPHAS]
+    exact = bright['exact']
+    darker, sharper = _rises(exact), _rises(sharp[::-1])
+    verdict = HOLDS if darker and sharper else FAILS if not darker and not sharper else (
+        f'{CONDITION}: sharper, but not darker throughout' if sharper else f'{CONDITION}: darker, but not sharper throughout')
+    charts = [replay_claim_draw.lines('Mean luminance of the figure', 'alpha', 'luminance',
+                                      {name: ([float(a) for a in ALPHAS], found) for name, found in bright.items()}, logs='x',
+                                      ticks=[float(a) for a in ALPHAS])]
+    rows = [[alpha, *(f'{found[k]:.4f}' for found in bright.values()), f'{sharp[k]:.3f}'] for k, alpha in enumerate(ALPHAS)]
+    course = f', by the course\'s formulas {_series(bright["course"])}' if 'course' in bright else ''
+    return Claim('Lower alpha is darker and sharper', verdict,
+                 f'The figure\'s mean luminance is {_series(exact)} at alpha {", ".join(ALPHAS)}{course}. Differences between neighbouring '
+                 f'pixels are {_series(sharp)} of it.',
+                 'Darker: luminance rises with every step of alpha by the exact model. Sharper: the root mean square difference of '
+                 'neighbouring pixels over the mean falls with every step; from products of two independent renders, so that noise '
+                 'does not count.',
+                 ['alpha', *(f'luminance, {name}' for name in bright), 'sharpness'], rows,
+                 [lab.command(scene, f'-l 4 -m 5 --alpha {{}}{flags}', 64) for flags in models.values()], charts)
+
+
+def _sharpness(a, b, figure):
+    """Root mean square difference of neighbours in a row, over the mean."""
+    inside = figure[:, 1:] & figure[:, :-1]
+    a, b = luminance(a), luminance(b)
+    squares = np.mean((np.diff(a, axis=1) * np.diff(b, axis=1))[inside])
+    return float(np.sqrt(max(0, squares)) / a[figure].mean())
+
+
+def _rises(values):
+    return all(a < b for a, b in zip(values, values[1:]))
+
+
+def _series(values):
+    return ', '.join(f'{v:.3g}' for v in values)
