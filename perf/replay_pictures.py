@@ -12,12 +12,12 @@ COLUMNS = 6
 FONT = '/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf'
 
 
-def animation(rendered, milliseconds):
-    """An APNG of all pictures in turn, the last longer; each labelled with its flags."""
+def animation(labelled, milliseconds):
+    """An APNG of all (label, picture) in turn, the last longer."""
     frames = []
-    for r in rendered:
-        frame = _image(r.picture).resize(FRAME, Image.Resampling.LANCZOS)
-        _label(frame, r.shot.label, 8, 8)
+    for label, picture in labelled:
+        frame = _image(picture).resize(FRAME, Image.Resampling.LANCZOS)
+        _label(frame, label, 8, 8)
         frames.append(frame)
     file = io.BytesIO()
     durations = [milliseconds] * (len(frames) - 1) + [2 * milliseconds]

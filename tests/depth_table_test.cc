@@ -25,7 +25,7 @@ using Kind = Material::Kind;
 using Pixels = std::vector<size_t>;
 
 #ifdef NDEBUG
-constexpr uint32_t kSamples = 32;
+constexpr uint32_t kSamples = 24;
 constexpr bool kTellMeans = true;
 #else
 constexpr uint32_t kSamples = 2;  // exact zeros alone; means need more

@@ -23,6 +23,12 @@ using Arguments = std::vector<std::string>;
 
 const std::string kPython = "/usr/bin/python3";
 
+#ifdef NDEBUG
+constexpr bool kClaims = true;
+#else
+constexpr bool kClaims = false;  // slow builds have enough in the pictures
+#endif
+
 // Three pictures of a shipped scene; that of the other scene is nowhere.
 const char* const kTopic = R"({
   "title": "Spheres & a box", "about": "What is there.", "scene": "CBspheres", "stand_in": "cornell_spheres",
@@ -53,7 +59,7 @@ ProcessResult look_at(const TemporaryFolder& folder, size_t charts) {
   return test::run_process(kPython, {check, "out/index.html", "--charts", std::to_string(charts)}, folder.path());
 }
 
-TEST_CASE("replay command: pictures, captions and a page that a browser shows as it should; it goes on where it was") {
+TEST_CASE("replay command: pictures and captions, and a page; it goes on where it was") {
   if (cannot_replay()) return;
   const TemporaryFolder folder;
   test::write_text(folder.file("topic.json"), kTopic);
@@ -97,31 +103,39 @@ TEST_CASE("replay command: pictures, captions and a page that a browser shows as
   }
   CHECK(replay(folder, {"topic.json"}).out.find("3 pictures, 0 claims, 1 renders") != std::string::npos);
   CHECK(read_text(folder.file("out/pictures/cornell-spheres-l-2-m-1-s-64.png")) == before);
-  CHECK(replay(folder, {"topic.json"}).out.find(" 0 renders") != std::string::npos);
-  // Other numbers of samples are other pictures.
-  CHECK(replay(folder, {"topic.json", "--full"}).out.find(" 1 renders") != std::string::npos);
-
-  if (!std::filesystem::exists("/usr/bin/chromium")) {
-    MESSAGE("skipped: no chromium");
-    return;
-  }
-  const ProcessResult seen = look_at(folder, 0);
-  CAPTURE(seen.out);
-  CAPTURE(seen.err);
-  CHECK(seen.exit_code == 0);
 }
 
-TEST_CASE("replay command: the shipped files can be rendered without the course's scenes") {
+TEST_CASE(
+    "replay command: the shipped files and all claims, without the course's scenes, and how a browser shows them") {
   if (cannot_replay()) return;
   const TemporaryFolder folder;
-  const ProcessResult result = replay(folder, {"--samples", "1", "-r", "24", "18", "--no-claims"});
+  Arguments arguments = {"--samples", "1", "-r", "24", "18"};
+  if (!kClaims) arguments.push_back("--no-claims");
+  const ProcessResult result = replay(folder, arguments);
   CAPTURE(result.err);
   REQUIRE(result.exit_code == 0);
   const json figures = json::parse(read_text(folder.file("out/replay.json")));
   CHECK(figures["pictures"].size() >= 30);
   CHECK(figures["notes"].size() >= 1);
-  const std::string page = read_text(folder.file("out/index.html"));
-  CHECK(page.find("render CB") == std::string::npos);
+  CHECK(figures["claims"].size() == (kClaims ? 5 : 0));
+  for (const json& claim : figures["claims"]) {
+    CAPTURE(claim["quote"]);
+    const auto verdict = claim["verdict"].get<std::string>();
+    CHECK((verdict.starts_with("Holds") || verdict.starts_with("Does not hold")));
+    CHECK(claim["rows"].size() >= 2);
+    for (const json& row : claim["rows"]) CHECK(row.size() == claim["head"].size());
+    CHECK(claim["commands"][0].get<std::string>().starts_with("lanewise render cornell_"));
+  }
+  CHECK(read_text(folder.file("out/index.html")).find("render CB") == std::string::npos);
+
+  if (!std::filesystem::exists("/usr/bin/chromium")) {
+    MESSAGE("skipped: no chromium");
+    return;
+  }
+  const ProcessResult seen = look_at(folder, kClaims ? 3 : 0);
+  CAPTURE(seen.out);
+  CAPTURE(seen.err);
+  CHECK(seen.exit_code == 0);
 }
 
 TEST_CASE("replay command: what it cannot do is said in one line, before any work") {
@@ -142,11 +156,8 @@ TEST_CASE("replay command: what it cannot do is said in one line, before any wor
   const auto sheet = [](const std::string& more) {
     return R"({"title": "a", "scene": "x", "stand_in": "cornell_spheres", "sheets": [{"title": "b", )" + more + "}]}";
   };
-  check_failure(1, {"missing.json"}, "missing.json: No such file");
   check_failure(2, {"--samples", "0"}, "--samples: '0' is not a whole number above 0");
-  check_file(1, "{", "Expecting property name");
   check_file(1, R"({"title": "a", "sheet": []})", "the file has an unknown member \"sheet\"");
-  check_file(1, R"({"title": "a", "sheets": [{"title": "b"}]})", "\"b\": has no \"scene\"");
   check_file(1, sheet(R"("sweep": "-m 0")"), "\"sweep\" of a sheet is not a list of texts");
   check_file(1, sheet(R"("flags": "-s 4")"), "\"b\": -s is for lanewise replay to choose");
   check_file(2, sheet(R"("sweep": ["--bounces 4"])"), "\"b\": --bounces 4: The following");
