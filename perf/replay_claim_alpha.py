@@ -5,7 +5,7 @@ import numpy as np
 
 import lanewise
 import replay_claim_draw
-from replay_claims import CONDITION, FAILS, HOLDS, Claim, luminance
+from replay_claims import CONDITION, FAILS, HOLDS, Claim, figure_of, luminance
 
 ALPHAS = ['0.005', '0.05', '0.25', '0.5']
 MODELS = {'exact': '', 'course': ' --model course'}
@@ -15,9 +15,7 @@ def darker_and_sharper(lab):
     scene = lab.scene('CBdragon_microfacet_au', 'cornell_metal')
     help_text = subprocess.run([lanewise.PROGRAM, 'render', '--help'], capture_output=True, text=True, check=True).stdout
     models = {name: flags for name, flags in MODELS.items() if not flags or '--model' in help_text}
-    # By direct light two metals differ where the figure is, and nothing else does.
-    silver, chromium = (lab.render(scene, f'-m 1 --alpha 0.5 --metal {metal}', 4)[0] for metal in ('Ag', 'Cr'))
-    figure = (silver != chromium).any(2)
+    figure = figure_of(lab, scene)
     bright = {name: [float(luminance(lab.render(scene, f'-l 4 -m 5 --alpha {alpha}{flags}', 64)[0])[figure].mean())
                      for alpha in ALPHAS] for name, flags in models.items()}
     sharp = [_sharpness(*(lab.render(scene, f'-l 4 -m 5 --alpha {alpha}{seed}', 64)[0] for seed in ('', ' --seed 1')), figure)

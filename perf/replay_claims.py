@@ -49,3 +49,9 @@ class Lab:
 
 def luminance(picture):
     return picture.astype(float) @ LUMINANCE
+
+
+def figure_of(lab, scene):
+    """Which pixels see metal that a light reaches: by direct light two metals differ there, and nothing else does."""
+    silver, chromium = (lab.render(scene, f'-m 1 --alpha 0.5 --metal {metal}', 4)[0] for metal in ('Ag', 'Cr'))
+    return (silver != chromium).any(2)
