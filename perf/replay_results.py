@@ -5,6 +5,7 @@ import lanewise
 import page
 import replay_claim_alpha
 import replay_claim_depth
+import replay_claim_model
 import replay_claim_noise
 import replay_page
 import replay_pictures
@@ -28,7 +29,8 @@ def measure_claims(studio, place):
     """In the write-ups' order; without those that have no scene."""
     lab = Lab(studio, place)
     measures = (replay_claim_noise.fireflies, replay_claim_noise.importance, replay_claim_depth.depth_needed,
-                replay_claim_depth.path_lengths, replay_claim_alpha.darker_and_sharper)
+                replay_claim_depth.path_lengths, replay_claim_alpha.darker_and_sharper,
+                replay_claim_model.departures)
     return [claim for measure in measures if (claim := measure(lab))]
 
 
