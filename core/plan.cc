@@ -5,8 +5,10 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "core/dimensions.h"
 #include "core/autofocus.h"
+#include "core/dimensions.h"
+
+#include "core/framing.h"
 #include "core/plan_connections.h"
 #include "core/plan_flat.h"
 #include "core/plan_lights.h"
@@ -83,36 +85,14 @@ class Planner {
  private:
   dvec3 relative(const dvec3& p) const { return p - box_.center(); }
 
-  // The file's camera, or the course program's framing: 1.5 diagonals back from the centre along the camera's axis,
-  // with a focal length of 600 / (2 tan(vfov / 2)) pixels whatever the resolution.
   void place_camera() {
-    const Settings& settings = plan_.settings;
-    const Camera& camera = scene_.cameras.front();
-    const double width = settings.width, height = settings.height;
-    // The field of view grows with the picture's shape to hold all of the camera's own view.
-    double tan_x = std::tan(camera.xfov / 2), tan_y = tan_x / camera.aspect;
-    if (tan_x / tan_y < width / height) {
-      tan_x = tan_y * width / height;
-    } else {
-      tan_y = tan_x / (width / height);
-    }
-    const dvec3 right = glm::normalize(dvec3(camera.to_world[0]));
-    const dvec3 back = glm::normalize(dvec3(camera.to_world[2]));
+    const Framing framing = frame(scene_, plan_.settings);
     PlanCamera& out = plan_.camera;
-    if (settings.view == View::kFile) {
-      copy(relative(dvec3(camera.to_world[3])), out.eye);
-      copy(right, out.right);
-      copy(glm::normalize(glm::cross(back, right)), out.up);
-      out.pixel = static_cast<float>(2 * tan_y / height);
-    } else {
-      copy(back * (1.5 * box_.diagonal()), out.eye);
-      const dvec3 world_up(0, 0, 1);
-      const dvec3 side = std::abs(back.z) < 0.999 ? glm::normalize(glm::cross(world_up, back)) : right;
-      copy(side, out.right);
-      copy(glm::cross(back, side), out.up);
-      out.pixel = static_cast<float>(2 * tan_y / 600);
-    }
-    copy(-back, out.forward);
+    copy(framing.eye, out.eye);
+    copy(-framing.back, out.forward);
+    copy(framing.right, out.right);
+    copy(framing.up, out.up);
+    out.pixel = static_cast<float>(framing.pixel);
   }
 
   void focus() {

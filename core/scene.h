@@ -57,6 +57,7 @@ struct Scene {
   std::vector<Sphere> spheres;
   std::vector<Camera> cameras;
   Image environment;                 // the radiance around it: core/environment_map.h says where; of no size: black
+  glm::dvec3 up{0, 0, 1};            // the axis of what needs one that the file does not give: unit
   std::vector<std::string> notices;  // what the loader decided and a user may want to know, a line each
 
   size_t triangle_count() const;

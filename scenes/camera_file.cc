@@ -31,14 +31,14 @@ class CameraReader {
     if (!json_.is_object()) fail("a camera is a JSON object with eye, target and xfov");
   }
 
-  Camera read() const {
+  Camera read(const dvec3& default_up) const {
     for (const auto& [key, value] : json_.items()) {
       if (key != "eye" && key != "target" && key != "up" && key != "xfov" && key != "aspect") {
         fail("unknown member \"" + key + "\"");
       }
     }
     const dvec3 eye = point("eye"), target = point("target");
-    const dvec3 up = json_.contains("up") ? point("up") : dvec3(0, 0, 1);
+    const dvec3 up = json_.contains("up") ? point("up") : default_up;
     const double degrees = number("xfov"), aspect = json_.contains("aspect") ? number("aspect") : 4.0 / 3.0;
     if (eye == target) fail("eye and target are the same point");
     if (!(degrees > 0 && degrees < 180)) fail("xfov must be between 0 and 180 degrees");
@@ -81,6 +81,6 @@ class CameraReader {
 
 }  // namespace
 
-Camera load_camera(const std::string& path) { return CameraReader(path).read(); }
+Camera load_camera(const std::string& path, const glm::dvec3& default_up) { return CameraReader(path).read(default_up); }
 
 }  // namespace lanewise

@@ -1,8 +1,9 @@
 #include "scenes/collada_camera.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "scenes/placing.h"
 
 namespace lanewise::collada {
 namespace {
@@ -13,17 +14,6 @@ double read_field_of_view(const Document& document, pugi::xml_node node) {
   const double degrees = document.number(node);
   if (!(degrees > 0 && degrees < 180)) document.fail(node, "a field of view must be between 0 and 180 degrees");
   return degrees * (std::numbers::pi / 180);
-}
-
-// Brought to a size of one first: a node's scale may be too small or large to be squared.
-glm::dvec3 unit(const glm::dvec3& v) {
-  return glm::normalize(v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
-}
-
-glm::dmat4 rigid_frame(const glm::dmat4& m) {
-  const glm::dvec3 back = unit(glm::dvec3(m[2]));
-  const glm::dvec3 right = unit(glm::cross(unit(glm::dvec3(m[1])), back));
-  return {glm::dvec4(right, 0), glm::dvec4(glm::cross(back, right), 0), glm::dvec4(back, 0), m[3]};
 }
 
 }  // namespace

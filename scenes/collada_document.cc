@@ -64,14 +64,6 @@ NumberError parse_double(const char*& begin, const char* end, double& value) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
-  constexpr size_t kLongest = 60;
-  std::string shown(text.substr(0, kLongest));
-  std::ranges::replace_if(
-      shown, [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
-  return '"' + shown + (text.size() > kLongest ? "...\"" : "\"");
-}
-
 std::string name_of(pugi::xml_node node) {
   const char* name = node.attribute("name").value();
   return *name != '\0' ? name : node.attribute("id").value();

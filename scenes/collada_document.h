@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "scenes/quoted.h"
+
 namespace lanewise::collada {
 
 class Document {
@@ -58,9 +60,6 @@ class Document {
   pugi::xml_node root_;
   std::unordered_map<std::string, pugi::xml_node> ids_;
 };
-
-// A one-line, printable, short form of text that comes from a file.
-std::string quoted(std::string_view text);
 
 // "name" or else "id", for display.
 std::string name_of(pugi::xml_node node);

@@ -1,6 +1,5 @@
 #include "scenes/collada_node.h"
 
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -10,34 +9,11 @@
 namespace lanewise::collada {
 namespace {
 
-glm::dvec3 transform_point(const glm::dmat4& m, const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1.0)); }
-
-// A unit vector, or zero for what has no direction.
-glm::dvec3 unit_or_zero(const glm::dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0.0);
-}
-
-Mesh place_part(const Part& part, const glm::dmat4& to_world) {
-  const Linear linear = linear_part(to_world);
+Mesh mesh_of(const Part& part) {
   Mesh mesh;
-  mesh.positions.reserve(part.positions.size());
-  for (const glm::dvec3& p : part.positions) mesh.positions.push_back(transform_point(to_world, p));
+  mesh.positions = part.positions;
   mesh.triangles = part.triangles;
   mesh.normals = part.normals;
-  if (linear.mirrored) {
-    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-    for (auto& normals : mesh.normals) std::swap(normals[1], normals[2]);
-  }
-  for (size_t i = 0; i < mesh.normals.size(); ++i) {
-    const auto& [a, b, c] = mesh.triangles[i];
-    const glm::dvec3& p = mesh.positions[a];
-    const glm::dvec3 face = glm::cross(mesh.positions[b] - p, mesh.positions[c] - p);
-    for (glm::dvec3& n : mesh.normals[i]) {
-      n = unit_or_zero(linear.cofactor * unit_or_zero(n));
-      if (n == glm::dvec3(0.0)) n = unit_or_zero(face);
-    }
-  }
   return mesh;
 }
 
@@ -76,7 +52,8 @@ class Instantiator {
     const Geometry& geometry = library_.geometry(instance);
     if (geometry.radius > 0) add_sphere(node, instance, geometry, to_world);
     for (const Part& part : geometry.parts) {
-      scene_.meshes.push_back(place_part(part, to_world));
+      scene_.meshes.push_back(mesh_of(part));
+      place_mesh(scene_.meshes.back(), to_world);
       scene_.meshes.back().name = name_of(node);
       scene_.meshes.back().material = library_.material(instance, part.symbol, part.element);
     }

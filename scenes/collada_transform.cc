@@ -18,8 +18,6 @@ glm::dvec3 unit(const Document& document, pugi::xml_node node, const glm::dvec3&
   return v / length;
 }
 
-double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
 glm::dmat4 matrix(const Document& document, pugi::xml_node node) {
   const std::vector<double> v = document.numbers(node, 16);
   if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1) document.fail(node, "the last row is not 0 0 0 1");
@@ -120,38 +118,6 @@ glm::dmat4 node_transform(const Document& document, pugi::xml_node node) {
     product = product * m;
   }
   return product;
-}
-
-bool invertible(const glm::dmat4& transform) {
-  glm::dmat3 m(transform);
-  for (int c = 0; c < 3; ++c) {
-    const double size = largest(m[c]);
-    if (!(size > 0 && std::isfinite(size))) return false;
-    m[c] /= size;
-  }
-  return std::abs(glm::determinant(m)) > 1e-12;
-}
-
-Linear linear_part(const glm::dmat4& transform) {
-  const glm::dmat3 m(transform);
-  const double size = std::max({largest(m[0]), largest(m[1]), largest(m[2])});
-  const glm::dmat3 n = m / size;
-  const double determinant = glm::determinant(n);
-  Linear linear;
-  linear.mirrored = determinant < 0;
-  const double sign = linear.mirrored ? -1 : 1;
-  linear.cofactor = sign * glm::dmat3(glm::cross(n[1], n[2]), glm::cross(n[2], n[0]), glm::cross(n[0], n[1]));
-  const double scale = std::cbrt(std::abs(determinant));
-  linear.scale = scale * size;
-  constexpr double kTolerance = 1e-4;
-  const glm::dmat3 gram = glm::transpose(n) * n;
-  linear.uniform = true;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      linear.uniform &= std::abs(gram[i][j] - (i == j ? scale * scale : 0)) <= kTolerance * scale * scale;
-    }
-  }
-  return linear;
 }
 
 }  // namespace lanewise::collada

@@ -5,6 +5,7 @@
 #include <pugixml.hpp>
 
 #include "scenes/collada_document.h"
+#include "scenes/placing.h"
 
 namespace lanewise::collada {
 
@@ -14,19 +15,5 @@ glm::dmat4 asset_transform(const Document& document);
 // The product of the node's transform elements in document order, as points see it from right to left. Fails for
 // matrices that are short, singular or not affine.
 glm::dmat4 node_transform(const Document& document, pugi::xml_node node);
-
-// Whether the linear part is finite and, its columns brought to a size of one, so that tiny and huge scales are not
-// taken for singular, has a determinant that is not 0.
-bool invertible(const glm::dmat4& transform);
-
-// A transform's linear part, for what is not a point.
-struct Linear {
-  glm::dmat3 cofactor;  // takes normals to normals that keep their side; not of unit length
-  bool mirrored;        // left and right are exchanged: windings must be reversed to keep the front in front
-  double scale;         // cube root of the determinant's size
-  bool uniform;         // a rotation or reflection times scale, to the six digits that files carry
-};
-// Of an invertible transform.
-Linear linear_part(const glm::dmat4& transform);
 
 }  // namespace lanewise::collada

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/types.h"
+#include "scenes/assimp_scene.h"
 #include "scenes/builtin.h"
 #include "scenes/collada.h"
 
@@ -46,11 +47,13 @@ std::string read_text(const std::string& path) {
 
 Scene load_scene(const std::string& path) {
   if (path.starts_with(kBuiltinPrefix)) return load_builtin(path);
-  const std::string text = read_text(path);
-  if (const std::string extension = lower_case_extension(path); extension != ".dae") {
-    throw Error(path + ": unknown scene format \"" + extension + "\"; scenes are COLLADA files (.dae)");
+  const std::string text = read_text(path), extension = lower_case_extension(path);
+  if (extension == ".dae") return load_collada(path, text);
+  if (extension == ".obj" || extension == ".ply" || extension == ".gltf" || extension == ".glb") {
+    return load_assimp(path, text);
   }
-  return load_collada(path, text);
+  throw Error(path + ": unknown scene format \"" + extension +
+              "\"; scenes are COLLADA (.dae), OBJ (.obj), PLY (.ply) and glTF (.gltf, .glb) files");
 }
 
 }  // namespace lanewise

@@ -30,7 +30,7 @@ TEST_CASE("scenes: files that are no scene") {
   const std::string folder = std::filesystem::temp_directory_path().string();
   CHECK_THROWS_WITH_AS(load_scene(folder), (folder + ": is a directory, not a scene file").c_str(), Error);
   CHECK_THROWS_WITH_AS(load_scene("/dev/null"), "/dev/null: is not a readable file", Error);
-  CHECK(error_of(kDocument, ".obj").find("unknown scene format \".obj\"") != std::string::npos);
+  CHECK(error_of(kDocument, ".fbx").find("unknown scene format \".fbx\"") != std::string::npos);
   CHECK(error_of("", ".dae").find("is empty") != std::string::npos);
   check_error("just some words", "not well-formed XML");
   check_error(std::string("\x7F"
@@ -61,6 +61,7 @@ TEST_CASE("scenes: errors name the line, the element and its id") {
 TEST_CASE("scenes: nothing to render") {
   check_error("<COLLADA/>", "no <visual_scene>");
   check_varied("<node id=\"camera-node\"><instance_camera url=\"#cam\"/></node>", "", "no camera");
+  CHECK_THROWS_AS(check_light(load_text(varied("3 2 1</radiance>", "0 0 0</radiance>"))), Error);
   std::string empty = varied("<instance_geometry url=\"#lamp\"/>", "");
   empty = varied("<instance_geometry url=\"#ball\"/>", "", empty);
   empty = varied("<node id=\"shape\">",

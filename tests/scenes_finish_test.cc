@@ -87,7 +87,9 @@ TEST_CASE("finish_scene refuses what cannot be rendered") {
   CHECK(finish_error(scene) == "made.dae: the scene has no camera");
   scene = small_scene();
   scene.meshes.clear();
-  CHECK(finish_error(scene) == "finished");
+  CHECK_THROWS_WITH_AS(check_light(scene), doctest::Contains("made.dae: the scene has no light"), Error);
+  scene.spheres[0].material = 0;
+  CHECK_NOTHROW(check_light(scene));
   scene.spheres.clear();
   CHECK(finish_error(scene).find("no geometry") != std::string::npos);
   for (const double bad : {nan, inf, -inf, 1e16, -1e300}) {

@@ -1,11 +1,13 @@
 #include "tools/chosen_scene.h"
 
+#include <algorithm>
 #include <string>
 
 #include "core/types.h"
 #include "scenes/camera_file.h"
 #include "scenes/environment_file.h"
 #include "scenes/load.h"
+#include "scenes/quoted.h"
 
 namespace lanewise {
 namespace {
@@ -36,12 +38,35 @@ void apply_overrides(Scene& scene, const RenderOptions& o) {
   apply_normals(scene, o.normals);
 }
 
+// The one of this name, or without a name the first; it is then the scene's only one.
+void choose_camera(Scene& scene, const std::string& name) {
+  std::string all;
+  for (const Camera& camera : scene.cameras) all += (all.empty() ? "" : ", ") + lanewise::quoted(camera.name);
+  if (name.empty()) {
+    if (scene.cameras.size() > 1) {
+      scene.notices.push_back(std::to_string(scene.cameras.size()) + " cameras: " + all +
+                              "; the first is used, --camera chooses");
+    }
+    scene.cameras.resize(1);
+    return;
+  }
+  const auto found = std::ranges::find(scene.cameras, name, &Camera::name);
+  if (found == scene.cameras.end()) {
+    throw UsageError("--camera: " + scene.path + " has no camera " + lanewise::quoted(name) + "; there is " + all);
+  }
+  scene.cameras = {Camera(*found)};
+}
+
 }  // namespace
 
 Scene load_chosen_scene(const RenderOptions& o) {
   Scene scene = load_scene(o.scene);
   apply_overrides(scene, o);
-  if (!o.camera_file.empty()) scene.cameras = {load_camera(o.camera_file)};
+  if (!o.camera_file.empty()) {
+    scene.cameras = {load_camera(o.camera_file, scene.up)};
+  } else {
+    choose_camera(scene, o.camera);
+  }
   if (!o.environment.empty()) scene.environment = load_environment(o.environment);
   check_light(scene);
   return scene;

@@ -30,9 +30,13 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("-p,--crop", o.crop, "Only these pixels of it: upper left corner and size")
       ->check(whole_number(0, kMaxSide))
       ->type_name("X Y DX DY");
+  CLI::Option* camera = app.add_option("--camera", o.camera, "The scene's camera of this name")
+                            ->type_name("NAME")
+                            ->default_str("the first");
   app.add_option("-c,--camera-file", o.camera_file,
                  "Camera (JSON: eye, target, up, xfov, aspect) in place of the scene's")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(camera);
   app.add_option(
          "-e,--environment", o.environment,
          "Map of radiance around the scene, .exr or .hdr: longitude atan2(y, x) from pi at its left edge to -pi, up "
@@ -201,7 +205,8 @@ std::string default_output(const std::string& scene) {
 
 void add_scene_options(CLI::App& app, RenderOptions& o) {
   app.option_defaults()->take_last();  // so that a flag can be appended to a command line to change it
-  app.add_option("SCENE", o.scene, "COLLADA file (.dae), or a scene made by code: builtin:dense")
+  app.add_option("SCENE", o.scene,
+                 "COLLADA, OBJ, PLY or glTF file (.dae .obj .ply .gltf .glb), or a scene made by code: builtin:dense")
       ->required()
       ->type_name("");
   const auto group = [&app](const char* name) { app.option_defaults()->group(name); };

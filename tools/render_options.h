@@ -20,6 +20,7 @@ enum class Model { kExact, kCourse, kCourseMasking, kCourseClamp };  // all of t
 struct RenderOptions {
   std::string scene;
   std::string output;       // the picture's file; complete() fills it in
+  std::string camera;       // the name of one of the scene's; empty: the first
   std::string camera_file;  // empty: the scene's camera
   std::string environment;  // the map around the scene; empty: none
   std::string stats;        // the statistics' file; empty: none
