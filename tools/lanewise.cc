@@ -30,6 +30,8 @@ void run(int argc, char** argv) {
   add_render_command(app, quoted_command_line(argc, argv));
   add_profile_command(app, quoted_command_line(argc, argv));
   add_plan_command(app, quoted_command_line(argc, argv));
+  add_info_command(app);
+  add_convert_command(app);
   add_compare_command(app);
   add_script_command(app, "chart", "Chart error against seconds of rendering, beside other renderers");
   add_script_command(app, "replay", "Render the pictures of the course's write-ups, and measure their claims");
