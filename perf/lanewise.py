@@ -20,21 +20,32 @@ def render(scene, *flags, camera=None, estimate=False):
     """The picture (height, width, 3), row 0 at the top, and the run's statistics. camera: a collada.Camera. estimate: the
     error too, which takes samples of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        picture, stats, view = (pathlib.Path(folder) / name for name in ('picture.pfm', 'stats.json', 'camera.json'))
-        command = [PROGRAM, 'render', scene, '-q', '-f', picture, '--stats', stats, *flags]
+        picture, stats = (pathlib.Path(folder) / name for name in ('picture.pfm', 'stats.json'))
         if not estimate:
-            command.append('--no-estimate')
+            flags = '--no-estimate', *flags
+        _run('render', scene, '-q', '-f', picture, '--stats', stats, *flags, camera=camera)
+        return read_pfm(picture), json.loads(stats.read_text())
+
+
+def convert(scene, output, *flags, camera=None):
+    """Writes the scene for another renderer."""
+    _run('convert', scene, '-q', '-f', output, *flags, camera=camera)
+
+
+def _run(*command, camera):
+    if not PROGRAM.exists():
+        raise SystemExit(f'{PROGRAM} is not there: tools/build')
+    with tempfile.TemporaryDirectory() as folder:
         if camera:
+            view = pathlib.Path(folder) / 'camera.json'
             view.write_text(json.dumps({
                 'eye': camera.eye.tolist(), 'target': camera.target.tolist(),
                 'xfov': float(2 * np.degrees(np.arctan(camera.tan_x))), 'aspect': camera.tan_x / camera.tan_y}))
-            command += ['-c', view]
-        if not PROGRAM.exists():
-            raise SystemExit(f'{PROGRAM} is not there: tools/build')
-        done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+            command = *command, '-c', view
+        command = [str(word) for word in (PROGRAM, *command)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            raise SystemExit(f'{" ".join(map(str, command))}: {done.stderr}')
-        return read_pfm(picture), json.loads(stats.read_text())
+            raise SystemExit(f'{" ".join(command)}: {done.stderr}')
 
 
 def read_pfm(path):

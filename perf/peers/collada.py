@@ -40,6 +40,7 @@ class Camera:
 
 class Scene:
     def __init__(self, path):
+        self.path = path
         self.root = ElementTree.parse(path).getroot()
         for element in self.root.iter():
             element.tag = element.tag.rsplit('}', 1)[-1]

@@ -76,6 +76,7 @@ class Subject:
         if normals or not self.loaded:
             loaded = render_mitsuba.MitsubaScene(self.scene, self.camera, normals or self.normals, WIDTH, HEIGHT,
                                                  self.threads)
+            loaded.check_shapes(self.scene)
             if normals:
                 return loaded.render(depth, samples, seed)
             self.loaded = loaded
