@@ -7,11 +7,10 @@
     lanewise replay --scenes FOLDER --out FOLDER      with the course's scenes in a folder; where to
 
 What is rendered is said in small files, perf/replay/*.json (perf/replay_files.py tells their form). Each picture is
-rendered once for a program and a scene and kept in a cache, so that a run which was stopped goes on where it was. Scenes
-that are not there are replaced by shipped ones. Writes index.html, which needs no other file, every picture as a PNG,
-contact-sheet.jpg and replay.json.
+rendered once for a program and a scene and kept in a cache, so that a run which was stopped goes on where it was.
+Scenes that are not there are replaced by shipped ones. Writes index.html, which needs no other file, every picture as a
+PNG, contact-sheet.jpg and replay.json.
 """
-import json
 import pathlib
 import shlex
 import sys
@@ -57,7 +56,9 @@ def main():
     if args.scenes != lanewise.COURSE and not args.scenes.is_dir():
         raise Problem(f'{args.scenes}: is no folder')
     place = replay_files.Place(args.scenes, args.resolution, args.full, args.samples)
-    notes = [] if args.scenes.is_dir() else ['The course\'s scenes are not there (--scenes FOLDER); shipped ones stand in.']
+    notes = []
+    if not args.scenes.is_dir():
+        notes.append('The course\'s scenes are not there (--scenes FOLDER); shipped ones stand in.')
     topics = [replay_files.read(path, place, notes) for path in args.files or sorted(FOLDER.glob('*.json'))]
     import replay_render  # here, for it and what follows take longer to load than all the checks above
     import replay_results

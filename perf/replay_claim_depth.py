@@ -5,8 +5,10 @@ import replay_claim_draw
 from replay_claims import CONDITION, FAILS, HOLDS, Claim, luminance
 
 DEPTHS = [0, 1, 2, 3, 4, 5, 7, 10, 100]
-SCENES = {'CBempty': None, 'CBspheres_lambertian': None, 'CBspheres_microfacet_al_ag': 'cornell_metal', 'CBspheres': 'cornell_spheres',
-          'CBbunny': None, 'CBbunny_microfacet_cu': None, 'CBbunny_glass': None, 'CBdragon_microfacet_au': None}
+SHOWN = [1, 2, 3, 5, 7]
+SCENES = {'CBempty': None, 'CBspheres_lambertian': None, 'CBspheres_microfacet_al_ag': 'cornell_metal',
+          'CBspheres': 'cornell_spheres', 'CBbunny': None, 'CBbunny_microfacet_cu': None, 'CBbunny_glass': None,
+          'CBdragon_microfacet_au': None}
 CLEAR = ('CBspheres', 'CBbunny_glass', 'cornell_spheres')  # with glass, that is
 BLOCK = 12  # pixels
 
@@ -31,20 +33,23 @@ def depth_needed(lab):
         shares[name] = [b.mean() / blocks[-1].mean() for b in blocks]
         worst = [np.quantile(b[lit] / blocks[-1][lit], 0.01) for b in blocks]
         needed[name] = _reached(shares[name], 0.99), _reached(worst, 0.9)
-        rows.append([name, *(f'{100 * shares[name][DEPTHS.index(m)]:.1f}%' for m in (1, 2, 3, 5, 7)), *map(str, needed[name])])
+        rows.append([name, *(f'{100 * shares[name][DEPTHS.index(m)]:.1f}%' for m in SHOWN), *map(str, needed[name])])
     clear = [by_part for name, (_, by_part) in needed.items() if name in CLEAR]
     opaque = [by_part for name, (_, by_part) in needed.items() if name not in CLEAR]
     if not clear or not opaque:
         return None
-    verdict = HOLDS if min(clear) > max(opaque) else f'{CONDITION}: for some of the scenes' if max(clear) > max(opaque) else FAILS
+    some = f'{CONDITION}: for some of the scenes' if max(clear) > max(opaque) else FAILS
+    verdict = HOLDS if min(clear) > max(opaque) else some
     chart = replay_claim_draw.lines('Energy that is there at -m', '-m', 'share of the energy at -m 100',
                                     {name: (DEPTHS[:8], found[:8]) for name, found in shares.items()}, ticks=DEPTHS[:8])
     return Claim('The ray depth needed depends on the transmissive and reflective objects', verdict,
                  f'For 90% of the light in 99% of the picture, scenes with glass need -m {_span(clear)}, the others -m '
                  f'{_span(opaque)}. In the mean of the picture they differ little: what walls send each other decides.',
-                 f'It holds if every scene with glass needs more than any without. Needed: that 99% of the lit blocks of {BLOCK} x '
+                 'It holds if every scene with glass needs more than any without. Needed: that 99% of the lit blocks '
+                 f'of {BLOCK} x '
                  f'{BLOCK} pixels have 90% of what they have at -m 100.',
-                 ['scene', *(f'energy at -m {m}' for m in (1, 2, 3, 5, 7)), '-m for 99% of it', '-m for 90% in 99% of the picture'],
+                 ['scene', *(f'energy at -m {m}' for m in SHOWN), '-m for 99% of it',
+                  '-m for 90% in 99% of the picture'],
                  rows, [lab.command(scene, '-m {}', 4) for scene in scenes.values()], [chart])
 
 
@@ -69,16 +74,20 @@ def path_lengths(lab):
             seconds[depth].append(found['seconds'])
             rays[depth] = rays.get(depth, 0) + found['rays']
     more, time = rays[1000] / rays[100] - 1, min(seconds[1000]) / min(seconds[100])
-    caught = (' They began where a sphere of glass touches the floor, nearer to it than the rounding of a ray\'s origin, and total '
-              'internal reflection holds them inside.') if lasting else ''
+    caught = (' They began where a sphere of glass touches the floor, nearer to it than the rounding of a ray\'s '
+              'origin, and total internal reflection holds them inside.') if lasting else ''
     chart = replay_claim_draw.lines('Paths that last', 'scattering events', 'share of paths with as many or more',
                                     {scene.stem: (range(1, min(longest, 50) + 1), at_least[1:51])}, logs='y')
     steps = [k for k in (1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 100) if k <= longest]
-    return Claim('It is hardly possible that a path lasts 100 bounces', HOLDS if lasting < 1e-6 * paths.sum() else FAILS,
-                 f'Of {paths.sum() / 1e6:.3g} million paths {lasting or "none"} had 100 scattering events or more, and one in a hundred '
-                 f'thousand had {int(np.argmax(at_least < 1e-5))}.{caught} In the tail {100 * keeps:.0f}% of the paths go on after each '
+    verdict = HOLDS if lasting < 1e-6 * paths.sum() else FAILS
+    return Claim('It is hardly possible that a path lasts 100 bounces', verdict,
+                 f'Of {paths.sum() / 1e6:.3g} million paths {lasting or "none"} had 100 scattering events or more, '
+                 'and one in a hundred '
+                 f'thousand had {int(np.argmax(at_least < 1e-5))}.{caught} In the tail {100 * keeps:.0f}% of the '
+                 'paths go on after each '
                  'event, for Russian roulette ends the others, without bias. '
                  f'-m 1000 has {100 * more:.3f}% more rays than -m 100, and took {time:.2f} of its time.',
                  'It holds if less than one path in a million has 100 events.',
                  ['events', 'share of paths with as many or more'], [[str(k), f'{at_least[k]:.3g}'] for k in steps],
-                 [lab.command(scene, '-l 4 -m 1000', 64), *(lab.command(scene, f'-m {m} --seed {{}}', 16) for m in (100, 1000))], [chart])
+                 [lab.command(scene, '-l 4 -m 1000', 64),
+                  *(lab.command(scene, f'-m {m} --seed {{}}', 16) for m in (100, 1000))], [chart])

@@ -13,8 +13,8 @@ def lines(title, across, up, series, logs='', ticks=None):
     with matplotlib.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(5.2, 3.4))
         for k, (name, (x, y)) in enumerate(series.items()):
-            axis.plot(x, y, color=COLOURS[k % len(COLOURS)], marker=MARKERS[k % len(MARKERS)], markersize=4, linewidth=1.4,
-                      label=name)
+            axis.plot(x, y, color=COLOURS[k % len(COLOURS)], marker=MARKERS[k % len(MARKERS)], markersize=4,
+                      linewidth=1.4, label=name)
         if 'x' in logs:
             axis.set_xscale('log')
         if 'y' in logs:

@@ -1,22 +1,19 @@
 """How far each departure of the course program moves the picture from the exact one."""
-import subprocess
-
 import numpy as np
 
-import lanewise
 import picture_error
 from replay_claims import FAILS, HOLDS, Claim, luminance
 
 BLOCK = 8  # pixels
-DEPARTURES = {'masking': '--model course-masking', 'clamp of angles': '--model course-clamp', 'Fresnel': '--fresnel course',
-              'direct light by hemisphere': '-H', 'all of --model course': '--model course'}
+DEPARTURES = {'masking': '--model course-masking', 'clamp of angles': '--model course-clamp',
+              'Fresnel': '--fresnel course', 'direct light by hemisphere': '-H', 'all of --model course': '--model '
+              'course'}
 SCENES = {'CBdragon_microfacet_au': ('cornell_metal', '--alpha 0.5'), 'CBspheres': ('cornell_spheres', '')}
 NOTICED = 0.01
 
 
 def departures(lab):
-    help_text = subprocess.run([lanewise.PROGRAM, 'render', '--help'], capture_output=True, text=True, check=True).stdout
-    if '--model' not in help_text:
+    if not lab.knows('--model'):
         return None
     rows, commands, most = [], [], 0
     for name, (stand_in, own) in SCENES.items():
@@ -34,9 +31,12 @@ def departures(lab):
                          f'{100 * moved:.2f}%' if moved > unsure else f'less than {100 * unsure:.2g}%'])
             commands.append(lab.command(scene, f'{base} {flags} --seed {{}}', 32))
     return Claim('The course program\'s formulas give the same picture', FAILS if most > NOTICED else HOLDS,
-                 f'With all of them, blocks of {BLOCK} x {BLOCK} pixels move by {100 * most:.2g}% in the root mean square.',
-                 f'It holds if no scene moves by more than {100 * NOTICED:g}%. Relative differences of two independent pairs of pictures '
-                 'are multiplied, so that noise does not count; "less than" where they are within two standard errors of 0.',
+                 f'With all of them, blocks of {BLOCK} x {BLOCK} pixels move by {100 * most:.2g}% in the root mean '
+                 'square.',
+                 f'It holds if no scene moves by more than {100 * NOTICED:g}%. Relative differences of two '
+                 'independent pairs of pictures '
+                 'are multiplied, so that noise does not count; "less than" where they are within two standard errors '
+                 'of 0.',
                  ['departure', 'mean', 'blocks move by'], rows, commands)
 
 

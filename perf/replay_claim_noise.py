@@ -32,10 +32,13 @@ def fireflies(lab):
                f'{CONDITION}: where direct light is sampled at the lights alone' if appear(light) else FAILS)
     rows = [list(map(str, row)) for row in zip(ALPHAS, light, on_light, mis, on_mis)]
     return Claim('Bright specks appear at small alpha', verdict,
-                 f'At alpha {", ".join(ALPHAS)} light samples alone leave {_series(light)} specks, MIS at the same number of samples '
-                 f'{_series(mis)}. On the metal itself, where its lobes meet the lights, these are {_series(on_light)} and '
+                 f'At alpha {", ".join(ALPHAS)} light samples alone leave {_series(light)} specks, MIS at the same '
+                 'number of samples '
+                 f'{_series(mis)}. On the metal itself, where its lobes meet the lights, these are '
+                 f'{_series(on_light)} and '
                  f'{_series(on_mis)}; the others are light that the metal throws on the walls.',
-                 f'A speck is a pixel that is brighter than white and than {SPECK} times all of the 3 x 3 around it in a picture of 256 '
+                 f'A speck is a pixel that is brighter than white and than {SPECK} times all of the 3 x 3 around it '
+                 'in a picture of 256 '
                  f'samples. They appear where a smaller alpha has over ten times as many as alpha {ALPHAS[-1]}.',
                  ['alpha', 'light samples', 'on the metal', 'MIS', 'on the metal'], rows,
                  [lab.command(scene, f'-l 4 -m 5 --alpha {{}}{flags}', 64) for flags in ways.values()])
@@ -46,11 +49,14 @@ def _series(counts):
 
 
 def importance(lab):
-    """Independent samples, so that error times seconds does not hang on their number; direct light as in the write-ups."""
+    """Of independent samples, for error times seconds then does not hang on their number; direct light as in the
+    write-ups."""
     scene = lab.scene('CBbunny_microfacet_cu', 'cornell_metal')
     base = '-l 1 -m 5 --sampler random'
-    ways = {'cosine': '--direct light --bsdf-sampling cosine', 'half vectors (ndf)': '--direct light --bsdf-sampling ndf',
-            'visible half vectors (vndf)': '--direct light --bsdf-sampling vndf', 'vndf and MIS (our default)': '--bsdf-sampling vndf',
+    ways = {'cosine': '--direct light --bsdf-sampling cosine',
+            'half vectors (ndf)': '--direct light --bsdf-sampling ndf',
+            'visible half vectors (vndf)': '--direct light --bsdf-sampling vndf',
+            'vndf and MIS (our default)': '--bsdf-sampling vndf',
             'vndf, hemisphere (-H)': '-H --bsdf-sampling vndf'}
     halves = [lab.render(scene, f'-l 1 -m 5 --seed {seed}', 256)[0].astype(float) for seed in (1001, 1002)]
     reference = sum(halves) / 2
@@ -68,14 +74,18 @@ def importance(lab):
     quieter = all(n < c for n, c in zip(error[ndf], error[cosine]))
     ratio = least[ndf] / least[cosine]
     verdict = FAILS if not quieter else HOLDS if ratio < 1.1 else f'{CONDITION}: at {ratio:.2f} times the time'
-    rows = [[name, f'{mean[name]:.3g}', f'{least[name]:.3g} s', f'{worth[name]:.3g}', f'{worth[cosine] / worth[name]:.2f} ×']
-            for name in ways]
+    rows = [[name, f'{mean[name]:.3g}', f'{least[name]:.3g} s', f'{worth[name]:.3g}',
+             f'{worth[cosine] / worth[name]:.2f} ×'] for name in ways]
     return Claim('Importance sampling decreases noise without affecting the time', verdict,
-                 f'Sampling half vectors has {mean[cosine] / mean[ndf]:.2f} times less MRSE than cosine-weighted directions, in '
-                 f'{ratio:.2f} of the time; visible half vectors {mean[cosine] / mean[vndf]:.2f} times less. Direct light by uniform '
-                 f'directions (-H) takes {worth[hemisphere] / worth[vndf]:.3g} times the time of light samples to the same error; '
+                 f'Sampling half vectors has {mean[cosine] / mean[ndf]:.2f} times less MRSE than cosine-weighted '
+                 'directions, in '
+                 f'{ratio:.2f} of the time; visible half vectors {mean[cosine] / mean[vndf]:.2f} times less. Direct '
+                 'light by uniform '
+                 f'directions (-H) takes {worth[hemisphere] / worth[vndf]:.3g} times the time of light samples to the '
+                 'same error; '
                  f'MIS {worth[mis] / worth[vndf]:.2f} times.',
-                 f'It decreases noise if each of {SEEDS} seeds has less error; the time is unaffected if it is within 10%. MRSE '
+                 f'It decreases noise if each of {SEEDS} seeds has less error; the time is unaffected if it is within '
+                 '10%. MRSE '
                  'against 512 samples, whose own error is taken off; the least seconds of the seeds.',
                  ['sampling', 'MRSE', 'seconds', 'MRSE x seconds', 'sooner than cosine'], rows,
                  [lab.command(scene, f'{base} {flags} --seed {{}}', 16) for flags in ways.values()])

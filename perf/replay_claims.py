@@ -1,8 +1,11 @@
-"""The write-ups' claims as numbers: what a claim is, and where its renders come from. The claims themselves: replay_claim_*.py."""
+"""The write-ups' claims as numbers: what a claim is, and where its renders come from; replay_claim_*.py make them."""
 import dataclasses
 import shlex
+import subprocess
 
 import numpy as np
+
+import lanewise
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
@@ -33,6 +36,11 @@ class Lab:
 
     def scene(self, name, stand_in):
         return self.place.find(name, stand_in)
+
+    def knows(self, flag):
+        """Whether the program has it."""
+        command = [lanewise.PROGRAM, 'render', '--help']
+        return flag in subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
     def render(self, scene, flags, samples):
         """Picture and record."""

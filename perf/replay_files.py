@@ -1,4 +1,5 @@
-"""The declarative files of `lanewise replay`, one for each topic (perf/replay/*.json): what is rendered and what it must show.
+"""The declarative files of `lanewise replay`, one for each topic (perf/replay/*.json): what is rendered, and what
+it must show.
 
     {
       "title": "...", "about": "...",
@@ -27,12 +28,13 @@ from command import Problem
 
 SAMPLES = [64]
 TEXT, LIST, NUMBERS = (str, 'a text'), (list, 'a list'), (list, 'a list of whole numbers above 0')
-OF_SHEET = {'title': TEXT, 'about': TEXT, 'scene': TEXT, 'stand_in': TEXT, 'flags': TEXT, 'sweep': (list, 'a list of texts'),
-            'shows': (dict, 'an object of texts'), 'samples': NUMBERS, 'full_samples': NUMBERS, 'rate': (bool, 'true or false'),
-            'animation': (int, 'a whole number')}
+OF_SHEET = {'title': TEXT, 'about': TEXT, 'scene': TEXT, 'stand_in': TEXT, 'flags': TEXT,
+            'sweep': (list, 'a list of texts'), 'shows': (dict, 'an object of texts'), 'samples': NUMBERS,
+            'full_samples': NUMBERS, 'rate': (bool, 'true or false'), 'animation': (int, 'a whole number')}
 OF_TOPIC = {'title': TEXT, 'about': TEXT, 'scene': TEXT, 'stand_in': TEXT, 'sheets': LIST}
 # Flags that the replay itself gives.
-TAKEN = {'-s', '--spp', '-f', '--output', '--stats', '-r', '--resolution', '--view', '-q', '--quiet', '--rate', '-t', '--threads'}
+TAKEN = {'-s', '--spp', '-f', '--output', '--stats', '-r', '--resolution', '--view', '-q', '--quiet', '--rate', '-t',
+         '--threads'}
 
 
 @dataclasses.dataclass

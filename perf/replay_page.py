@@ -4,7 +4,8 @@ import html
 import page
 from replay_pictures import animation
 
-STYLE = """.sheet { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(270px, 100%), 1fr)); gap: 20px 16px; }
+STYLE = """.sheet { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(270px, 100%), 1fr)); }
+.sheet { gap: 20px 16px; }
 .sheet img { width: 100%; height: auto; display: block; margin-bottom: 4px; background: #000; }
 .sheet b { color: #111827; } figcaption span { display: block; margin: 2px 0; } .sheet code { padding: 1px 3px; }
 .evidence { display: flex; flex-wrap: wrap; gap: 8px 32px; align-items: flex-start; } .evidence > * { min-width: 0; }
@@ -16,9 +17,11 @@ QUALITY = {'quality': 90}
 def page_of(topics, claims, command, machine, version, notes):
     """topics: [(Topic, {name of a shot: Rendered})]. claims: replay_claim.Claim."""
     esc = html.escape
-    links = [(f'topic-{k}', topic.title) for k, (topic, _) in enumerate(topics)] + ([('claims', 'Claims')] if claims else [])
-    body = ['<p>Every picture that the write-ups of the course\'s path tracer show, rendered by Lanewise, and their claims '
-            'as numbers. Noise is the estimated MRSE: the mean of (picture − truth)² / (truth + 0.01)².</p>',
+    links = [(f'topic-{k}', topic.title) for k, (topic, _) in enumerate(topics)]
+    if claims:
+        links.append(('claims', 'Claims'))
+    body = ['<p>Every picture that the write-ups of the course\'s path tracer show, rendered by Lanewise, and their '
+            'claims as numbers. Noise is the estimated MRSE: the mean of (picture − truth)² / (truth + 0.01)².</p>',
             f'<p><code>{esc(command)}</code></p>', f'<p><small>{esc(version)}; {esc(machine)}.</small></p>',
             *(f'<p><small>{esc(note)}</small></p>' for note in notes),
             '<nav>' + ' '.join(f'<a href="#{anchor}">{esc(title)}</a>' for anchor, title in links) + '</nav>']

@@ -49,7 +49,8 @@ def _image(linear):
 def _label(image, text, x, y):
     draw = ImageDraw.Draw(image)
     font = _font(14)
-    draw.rectangle([x - 4, y - 2, *(v + d for v, d in zip(draw.textbbox((x, y), text, font=font)[2:], (4, 3)))], fill='#111827')
+    _, _, right, bottom = draw.textbbox((x, y), text, font=font)
+    draw.rectangle([x - 4, y - 2, right + 4, bottom + 3], fill='#111827')
     draw.text((x, y), text, fill='white', font=font)
 
 

@@ -45,8 +45,9 @@ class Studio(Kept):
     def _render(self, scene, flags, path):
         picture, stats = lanewise.render(scene, *flags, estimate=True)
         write(path.with_suffix('.npy'), half(picture))
-        return {'seconds': stats['seconds']['render'], 'rays': stats['rays']['total'], 'mrse': stats.get('estimated_mrse'),
-                'samples_per_pixel': stats['samples_per_pixel'], 'paths_by_length': stats['paths_by_length']}
+        return {'seconds': stats['seconds']['render'], 'rays': stats['rays']['total'],
+                'mrse': stats.get('estimated_mrse'), 'samples_per_pixel': stats['samples_per_pixel'],
+                'paths_by_length': stats['paths_by_length']}
 
     def _path(self, scene, flags):
         if scene not in self.scenes:
