@@ -81,10 +81,8 @@ def path_lengths(lab):
     steps = [k for k in (1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 100) if k <= longest]
     verdict = HOLDS if lasting < 1e-6 * paths.sum() else FAILS
     return Claim('It is hardly possible that a path lasts 100 bounces', verdict,
-                 f'Of {paths.sum() / 1e6:.3g} million paths {lasting or "none"} had 100 scattering events or more, '
-                 'and one in a hundred '
-                 f'thousand had {int(np.argmax(at_least < 1e-5))}.{caught} In the tail {100 * keeps:.0f}% of the '
-                 'paths go on after each '
+                 f'Of {paths.sum() / 1e6:.3g} million paths {lasting or "none"} had 100 scattering events or more.{caught} One in '
+                 f'a hundred thousand had {int(np.argmax(at_least < 1e-5))} or more; in the tail {100 * keeps:.0f}% go on after each '
                  'event, for Russian roulette ends the others, without bias. '
                  f'-m 1000 has {100 * more:.3f}% more rays than -m 100, and took {time:.2f} of its time.',
                  'It holds if less than one path in a million has 100 events.',

@@ -83,7 +83,7 @@ def importance(lab):
                  'light by uniform '
                  f'directions (-H) takes {worth[hemisphere] / worth[vndf]:.3g} times the time of light samples to the '
                  'same error; '
-                 f'MIS {worth[mis] / worth[vndf]:.2f} times.',
+                 f'MIS takes {worth[mis] / worth[vndf]:.2f} of it.',
                  f'It decreases noise if each of {SEEDS} seeds has less error; the time is unaffected if it is within '
                  '10%. MRSE '
                  'against 512 samples, whose own error is taken off; the least seconds of the seeds.',
