@@ -15,9 +15,9 @@ struct Framing {
   double pixel;                // a pixel's side at distance 1 (square pixels): 1 / focal length in pixels
 };
 
-// By settings.view: the scene's first camera, whose field of view grows with the picture's shape to hold all of the camera's
-// own; or the course program's framing: 1.5 diagonals back from the centre along the camera's axis, with a focal length of
-// 600 / (2 tan(vfov / 2)) pixels whatever the resolution, and the scene's up upright.
+// By settings.view: the scene's first camera, whose field of view grows with the picture's shape to hold all of the
+// camera's own; or the course program's framing: 1.5 diagonals back from the centre along the camera's axis, with a
+// focal length of 600 / (2 tan(vfov / 2)) pixels whatever the resolution, and the scene's up upright.
 Framing frame(const Scene& scene, const Settings& settings);
 
 }  // namespace lanewise

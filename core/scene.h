@@ -78,8 +78,8 @@ struct Bounds {
 Bounds bounds(const Scene& scene);
 
 // The last step of every loader: drops zero-area triangles (with a notice that counts them) and meshes left empty, and
-// throws Error, naming scene.path, for what cannot be rendered: no geometry, no camera, coordinates that are not finite or
-// above 1e15, indices out of range.
+// throws Error, naming scene.path, for what cannot be rendered: no geometry, no camera, coordinates that are not finite
+// or above 1e15, indices out of range.
 void finish_scene(Scene& scene);
 
 // Throws Error, naming scene.path, if nothing in it nor around it emits light.

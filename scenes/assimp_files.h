@@ -11,7 +11,8 @@ namespace lanewise {
 // does not exist for it.
 class SceneFiles : public Assimp::IOSystem {
  public:
-  // text: what stands for the scene's own file; missed gets a line for each file that could not be read. All arguments must outlive the object.
+  // text: what stands for the scene's own file; missed gets a line for each file that could not be read. All arguments
+  // must outlive the object.
   SceneFiles(const std::string& path, const std::string& text, std::vector<std::string>& missed);
 
   bool Exists(const char* file) const override;

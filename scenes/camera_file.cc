@@ -81,6 +81,8 @@ class CameraReader {
 
 }  // namespace
 
-Camera load_camera(const std::string& path, const glm::dvec3& default_up) { return CameraReader(path).read(default_up); }
+Camera load_camera(const std::string& path, const glm::dvec3& default_up) {
+  return CameraReader(path).read(default_up);
+}
 
 }  // namespace lanewise

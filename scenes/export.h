@@ -22,21 +22,22 @@ struct ExportedScene {
   std::vector<std::string> losses;  // what the other renderer will show otherwise, a line each
 };
 
-// What the picture shows of the scene: settings' resolution, view, lens, depth and samples. folder: of the meshes' files, seen
-// from the scene's own. Scene::meshes' normals are written as they are.
+// What the picture shows of the scene: settings' resolution, view, lens, depth and samples. folder: of the meshes'
+// files, seen from the scene's own. Scene::meshes' normals are written as they are.
 //
-// Mitsuba 3 (XML). Everything is exact but for what floats round: box filter, two-sided opaque materials, emitters that shine
-// from their front, max_depth one above ours, roulette only where ours is. $samples, $depth and $sampler may be set from its
-// command line (-D). In spectral variants colours become spectra, and other than here.
+// Mitsuba 3 (XML). Everything is exact but for what floats round: box filter, two-sided opaque materials, emitters that
+// shine from their front, max_depth one above ours, roulette only where ours is. $samples, $depth and $sampler may be
+// set from its command line (-D). In spectral variants colours become spectra, and other than here.
 ExportedScene export_mitsuba(const Scene& scene, const Settings& settings, const std::string& folder);
 
-// pbrt-v4. Exact: geometry, camera, lens, box filter, depth, diffuse surfaces, emitters, glass without tints. Not exact, and
-// told among the losses: pbrt has no Beckmann distribution (its conductors are GGX of the same alpha); a mirror is a smooth
-// conductor whose reflectance is right head on only; glass has no tints. It renders spectra: eta and k are given at our three
-// wavelengths and are linear between them, constant beyond.
+// pbrt-v4. Exact: geometry, camera, lens, box filter, depth, diffuse surfaces, emitters, glass without tints. Not
+// exact, and told among the losses: pbrt has no Beckmann distribution (its conductors are GGX of the same alpha); a
+// mirror is a smooth conductor whose reflectance is right head on only; glass has no tints. It renders spectra: eta and
+// k are given at our three wavelengths and are linear between them, constant beyond.
 ExportedScene export_pbrt(const Scene& scene, const Settings& settings, const std::string& folder);
 
-// The mesh as a binary little-endian PLY of floats: positions, normals too if it has some and `normals` is set, triangles.
+// The mesh as a binary little-endian PLY of floats: positions, normals too if it has some and `normals` is set,
+// triangles.
 std::string ply_file(const Mesh& mesh, bool normals);
 
 // "scene.xml" of folder "scene_meshes": "scene_meshes/3.ply".

@@ -105,7 +105,7 @@ class Writer {
     root_.append_child(pugi::node_comment).set_value((' ' + m.name + ' ').c_str());
     pugi::xml_node outer = plugin(root_, "bsdf", m.kind == Kind::kGlass ? type : "twosided");
     outer.append_attribute("id") = id_of(index).c_str();
-      const pugi::xml_node node = m.kind == Kind::kGlass ? outer : plugin(outer, "bsdf", type);
+    const pugi::xml_node node = m.kind == Kind::kGlass ? outer : plugin(outer, "bsdf", type);
     switch (m.kind) {
       case Kind::kDiffuse:
         rgb(node, "reflectance", m.reflectance);

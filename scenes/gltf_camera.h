@@ -8,8 +8,8 @@
 
 namespace lanewise {
 
-// An element of "cameras" of the type "perspective", seen from its node. Throws Error for fields of view and aspect ratios out
-// of range.
+// An element of "cameras" of the type "perspective", seen from its node. Throws Error for fields of view and aspect
+// ratios out of range.
 Camera read_gltf_camera(const JsonValue& camera, const glm::dmat4& to_world);
 
 }  // namespace lanewise

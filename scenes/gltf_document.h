@@ -11,14 +11,14 @@
 
 namespace lanewise {
 
-// Assimp 5.2 knows neither KHR_materials_emissive_strength nor which of a file's materials one of its own was, and trusts
-// many numbers of a file. So materials and cameras are read here, and geometry() hands over the rest alone, with nodes and
-// materials named by their index: "node 3", "material 7".
+// Assimp 5.2 knows neither KHR_materials_emissive_strength nor which of a file's materials one of its own was, and
+// trusts many numbers of a file. So materials and cameras are read here, and geometry() hands over the rest alone, with
+// nodes and materials named by their index: "node 3", "material 7".
 class GltfDocument {
  public:
   // Both arguments must outlive the document. Throws Error for broken JSON or chunks, versions other than 2, required
-  // extensions that are not understood, references that lead nowhere, nodes that are no tree or are nested more than 1000
-  // deep, and accessors that reach beyond their buffers.
+  // extensions that are not understood, references that lead nowhere, nodes that are no tree or are nested more than
+  // 1000 deep, and accessors that reach beyond their buffers.
   GltfDocument(const std::string& path, const std::string& text);
 
   // The file with which geometry is left, in the form that the original has.

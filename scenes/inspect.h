@@ -24,9 +24,9 @@ struct LightFacts {
 std::vector<MaterialUse> material_uses(const Scene& scene);  // one for each of Scene::materials
 std::vector<LightFacts> light_facts(const Scene& scene);
 
-// A line each: no light; emitters with nothing in front of them; glass that is not closed, where more or fewer than two faces
-// share an edge or disagree on what is outside; triangles that others cover exactly; diffuse surfaces that absorb nothing;
-// cameras that have the whole scene behind them. Linear in the triangles but for sorting.
+// A line each: no light; emitters with nothing in front of them; glass that is not closed, where more or fewer than two
+// faces share an edge or disagree on what is outside; triangles that others cover exactly; diffuse surfaces that absorb
+// nothing; cameras that have the whole scene behind them. Linear in the triangles but for sorting.
 std::vector<std::string> scene_warnings(const Scene& scene);
 
 }  // namespace lanewise

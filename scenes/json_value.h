@@ -9,8 +9,9 @@
 
 namespace lanewise {
 
-// Values that are not there are absent, and so is what is asked of them; the readers then give `otherwise`. All throw Error
-// "FILE: materials[3].alphaMode MESSAGE" for values of another kind. The file's name and the JSON must outlive it.
+// Values that are not there are absent, and so is what is asked of them; the readers then give `otherwise`. All throw
+// Error "FILE: materials[3].alphaMode MESSAGE" for values of another kind. The file's name and the JSON must outlive
+// it.
 class JsonValue {
  public:
   JsonValue(const std::string& file, const nlohmann::json& root) : file_(&file), json_(&root) {}

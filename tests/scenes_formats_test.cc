@@ -161,7 +161,8 @@ TEST_CASE("formats: glTF materials") {
   CHECK(glass.transmittance == dvec3(0.9, 1, 1));
   CHECK(glass.reflectance == dvec3(1.0));
   const Material light = gltf_material(
-      R"({"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}})");
+      R"({"emissiveFactor": [1, 0.5, 0], "extensions": 
+      {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}})");
   CHECK(light.kind == Kind::kEmission);
   CHECK(light.radiance == dvec3(20, 10, 0));
   std::vector<std::string> notices;
