@@ -117,7 +117,7 @@ TEST_CASE("chi-square: directions to the environment, on every target") {
 
 TEST_CASE("environment: what the camera sees of it, directly and in a mirror, lies where the map says") {
   const auto check = [](Scene scene, const dvec3& eye, const dvec3& target, const dvec3& seen, double tint) {
-    scene.cameras = {test::look(eye, target, 1e-4)};
+    scene.cameras = {test::look(eye, target, 2e-5)};
     Settings settings = test::small_picture();
     settings.spp = 1, settings.max_depth = 1;
     const Plan plan = make_plan(scene, settings);
