@@ -146,8 +146,16 @@ Image read_any(const std::string& path) {
   return decode_pfm(bytes);
 }
 
-std::string encode(const std::string& path, const Image& image,
-                   const std::vector<std::pair<std::string, std::string>>& metadata) {
+}  // namespace
+
+bool holds_colours(const std::string& path) { return format_of(path) == Format::kPng; }
+
+void check_image_extension(const std::string& path) { format_of(path); }
+
+void check_image_writable(const std::string& path) { check_writable(path); }
+
+std::string encode_image(const std::string& path, const Image& image,
+                         const std::vector<std::pair<std::string, std::string>>& metadata) {
   switch (format_of(path)) {
     case Format::kPng:
       return encode_png(image);
@@ -161,17 +169,9 @@ std::string encode(const std::string& path, const Image& image,
   throw std::logic_error("format");
 }
 
-}  // namespace
-
-bool holds_colours(const std::string& path) { return format_of(path) == Format::kPng; }
-
-void check_image_extension(const std::string& path) { format_of(path); }
-
-void check_image_writable(const std::string& path) { check_writable(path); }
-
 void write_image(const std::string& path, const Image& image,
                  const std::vector<std::pair<std::string, std::string>>& metadata) {
-  write_file(path, encode(path, image, metadata));
+  write_file(path, encode_image(path, image, metadata));
 }
 
 Image read_image(const std::string& path) {

@@ -26,6 +26,10 @@ void check_image_writable(const std::string& path);
 void write_image(const std::string& path, const Image& image,
                  const std::vector<std::pair<std::string, std::string>>& metadata = {});
 
+// The bytes of that file.
+std::string encode_image(const std::string& path, const Image& image,
+                         const std::vector<std::pair<std::string, std::string>>& metadata = {});
+
 // Linear radiance; .png is decoded from sRGB. Refuses pictures of more than 2^28 pixels. Throws Error with the path.
 Image read_image(const std::string& path);
 

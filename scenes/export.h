@@ -18,7 +18,7 @@ struct ExportedFile {
 
 struct ExportedScene {
   std::string text;                 // the scene's file
-  std::vector<ExportedFile> files;  // a mesh each
+  std::vector<ExportedFile> files;  // a mesh each, the environment map
   std::vector<std::string> losses;  // what the other renderer will show otherwise, a line each
 };
 
@@ -31,9 +31,9 @@ struct ExportedScene {
 ExportedScene export_mitsuba(const Scene& scene, const Settings& settings, const std::string& folder);
 
 // pbrt-v4. Exact: geometry, camera, lens, box filter, depth, diffuse surfaces, emitters, glass without tints. Not
-// exact, and told among the losses: pbrt has no Beckmann distribution (its conductors are GGX of the same alpha); a
-// mirror is a smooth conductor whose reflectance is right head on only; glass has no tints. It renders spectra: eta and
-// k are given at our three wavelengths and are linear between them, constant beyond.
+// exact, and told among the losses: environment maps are left out; pbrt has no Beckmann distribution (its conductors
+// are GGX of the same alpha); a mirror is a smooth conductor whose reflectance is right head on only; glass has no
+// tints. It renders spectra: eta and k are given at our three wavelengths and are linear between them, constant beyond.
 ExportedScene export_pbrt(const Scene& scene, const Settings& settings, const std::string& folder);
 
 // The mesh as a binary little-endian PLY of floats: positions, normals too if it has some and `normals` is set,

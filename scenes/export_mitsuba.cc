@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "core/image_io.h"
 #include "scenes/export.h"
 
 namespace lanewise {
@@ -30,6 +32,7 @@ class Writer {
     for (size_t i = 0; i < scene_.materials.size(); ++i) add_material(i);
     for (size_t i = 0; i < scene_.meshes.size(); ++i) add_mesh(i);
     for (const Sphere& sphere : scene_.spheres) add_sphere(sphere);
+    if (scene_.environment.width > 0) add_environment();
     std::ostringstream text;
     document_.save(text, "  ");
     result_.text = text.str();
@@ -149,6 +152,27 @@ class Writer {
     set(node, "point", "center", exact(sphere.center));
     set(node, "float", "radius", exact(sphere.radius));
     add_surface(node, sphere.material);
+  }
+
+  // In Mitsuba the first and the last row of texels lie at the poles, and y is up. With a row at every half row of ours, of
+  // which those between two are their mean, both interpolate to the same. It takes no map of one column.
+  void add_environment() {
+    const Image& map = scene_.environment;
+    Image rows(std::max(map.width, 2u), 2 * map.height + 1);
+    for (uint32_t y = 0; y < rows.height; ++y) {
+      const uint32_t upper = (std::max(y, 1u) - 1) / 2, lower = std::min(y / 2, map.height - 1);
+      for (uint32_t x = 0; x < rows.width; ++x) {
+        const float *a = map.pixel(x % map.width, upper), *b = map.pixel(x % map.width, lower);
+        for (int k = 0; k < 3; ++k) rows.pixel(x, y)[k] = 0.5f * a[k] + 0.5f * b[k];
+      }
+    }
+    const std::string path = folder_ + "/sky.pfm";
+    result_.files.push_back({path, encode_image(path, rows)});
+    pugi::xml_node node = plugin(root_, "emitter", "envmap");
+    set(node, "string", "filename", path);
+    pugi::xml_node transform = node.append_child("transform");
+    transform.append_attribute("name") = "to_world";
+    transform.append_child("matrix").append_attribute("value") = "0 0 1 0  1 0 0 0  0 1 0 0  0 0 0 1";
   }
 
   void add_surface(pugi::xml_node node, uint32_t material) {

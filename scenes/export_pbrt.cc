@@ -28,6 +28,8 @@ class Writer {
     for (size_t i = 0; i < scene_.materials.size(); ++i) add_material(i);
     for (size_t i = 0; i < scene_.meshes.size(); ++i) add_mesh(i);
     for (const Sphere& sphere : scene_.spheres) add_sphere(sphere);
+    if (scene_.environment.width > 0)
+      result_.losses.push_back("the environment map is left out: pbrt has another mapping");
     return std::move(result_);
   }
 

@@ -93,4 +93,29 @@ TEST_CASE("environment file: `lanewise render` lights a scene by it, which witho
   CHECK(over.err.find("would overwrite a.pfm") != std::string::npos);
 }
 
+TEST_CASE(
+    "environment file: `lanewise convert` gives Mitsuba a map with rows at the poles that interpolates to the same") {
+  if (test::nothing_to_test()) return;
+  const test::TemporaryFolder folder;
+  const std::string scenes = test::environment("LANEWISE_SOURCE_DIR", ".") + "/scenes/";
+  const auto convert = [&](const std::string& sky) {
+    return test::run_process(test::program(), {"convert", scenes + "outdoors.dae", "-e", sky, "-f", "a.xml"},
+                             folder.path());
+  };
+  CHECK(convert(scenes + "sky.hdr").exit_code == 0);
+  const Image map = load_environment(scenes + "sky.hdr"), rows = load_environment(folder.file("a_meshes/sky.pfm"));
+  REQUIRE(rows.width == map.width);
+  REQUIRE(rows.height == 2 * map.height + 1);
+  for (uint32_t y = 0; y < rows.height; ++y) {
+    const uint32_t upper = y > 1 ? (y - 1) / 2 : 0, lower = std::min(y / 2, map.height - 1);
+    CHECK(rows.pixel(7, y)[1] == doctest::Approx((map.pixel(7, upper)[1] + map.pixel(7, lower)[1]) / 2));
+  }
+  CHECK(test::read_text(folder.file("a.xml")).find("a_meshes/sky.pfm") != std::string::npos);
+  Image one_texel(1, 1);
+  one_texel.rgb = {1, 2, 3};
+  write_image(folder.file("one.pfm"), one_texel);
+  CHECK(convert("one.pfm").exit_code == 0);
+  CHECK(load_environment(folder.file("a_meshes/sky.pfm")).width == 2);
+}
+
 }  // namespace lanewise
