@@ -32,7 +32,9 @@ def mitsuba_version():
 class MitsubaScene:
     """The file of a collada.Scene, loaded once for renders of many depths and seeds."""
 
-    def __init__(self, scene, camera, normals, width, height, threads, variant=VARIANT, sampler=SAMPLER):
+    def __init__(self, scene, camera, normals, width, height, threads, variant=VARIANT, sampler=SAMPLER,
+                 flags=()):
+        """flags: of `lanewise convert`, besides."""
         import drjit
         import mitsuba
         mitsuba.set_variant(variant)
@@ -40,7 +42,7 @@ class MitsubaScene:
         self.mi = mitsuba
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / 'scene.xml'
-            lanewise.convert(scene.path, file, '-r', width, height, '--normals', normals, camera=camera)
+            lanewise.convert(scene.path, file, '-r', width, height, '--normals', normals, *flags, camera=camera)
             self.scene = mitsuba.load_file(str(file), sampler=sampler)
 
     def render(self, depth, samples, seed):

@@ -19,14 +19,15 @@ def print_and_write(name, text, data=None):
         (FOLDER / f'{name}.json').write_text(json.dumps(data, indent=1) + '\n')
 
 
-def comparison_page(rows, command, samples):
-    """rows: (scene, normals, depth, Comparison). samples: a sentence that says how many."""
+def comparison_page(rows, command, samples, second='normals', subject='Lanewise beside Mitsuba 3'):
+    """rows: (scene, normals, depth, Comparison), or what `second` names in the normals' place. samples: a sentence that
+    says how many."""
     passed = {test: sum(c.verdicts[test] for *_, c in rows) for test in rows[0][3].verdicts}
     agree = min(passed.values()) == len(rows)
     ratios = [abs(d) / e for *_, c in rows for d, e in zip(c.difference, c.error) if e > 0]
     largest = max((abs(d), e) for *_, c in rows for d, e in zip(c.difference, c.error))
     lines = [
-        '# Lanewise beside Mitsuba 3: the same pictures?', '',
+        f'# {subject}: the same pictures?', '',
         f'Lanewise {lanewise.version()}, Mitsuba {render_mitsuba.mitsuba_version()} {render_mitsuba.VARIANT}; '
         f'{lanewise.processor()}. {samples}', '',
         f'    {command}', '',
@@ -39,7 +40,7 @@ def comparison_page(rows, command, samples):
         'Pixels: share that passes (least of luminance, R, G and B), at least 99.75%. p < 0.05: share of the pixels, '
         'at most 5.8%. Block: least p-value of 10 x 10 pixels, corrected for all blocks of the table, at least 0.01. '
         'Means: Lanewise against Mitsuba in %, ± one standard error. perf/peers/welch.py explains the tests.', '',
-        '| scene | normals | -m | pixels, % | p < 0.05, % | block | R, % | G, % | B, % | |', '|---' * 10 + '|']
+        f'| scene | {second} | -m | pixels, % | p < 0.05, % | block | R, % | G, % | B, % | |', '|---' * 10 + '|']
     for scene, normals, depth, c in rows:
         means = ' | '.join(f'{100 * d:+.3f} ± {100 * e:.3f}' for d, e in zip(c.difference, c.error))
         faults = [test for test, good in c.verdicts.items() if not good]
@@ -47,7 +48,7 @@ def comparison_page(rows, command, samples):
                      f'{c.worst_block:.2g} | {means} | {", ".join(faults) or "ok"} |')
     data = {'lanewise': lanewise.version(), 'mitsuba': render_mitsuba.mitsuba_version(),
             'processor': lanewise.processor(), 'command': command, 'samples': samples,
-            'pictures': [{'scene': scene, 'normals': normals, 'depth': depth, **dataclasses.asdict(c),
+            'pictures': [{'scene': scene, second: normals, 'depth': depth, **dataclasses.asdict(c),
                           'verdicts': c.verdicts} for scene, normals, depth, c in rows]}
     return '\n'.join(lines) + '\n', data
 
