@@ -7,8 +7,8 @@ from PIL import Image, ImageDraw, ImageFont
 from page import to_srgb
 
 FRAME = (360, 270)  # of animations, in pixels
-THUMBNAIL = (200, 150)
-COLUMNS = 6
+THUMBNAIL = (240, 180)
+COLUMNS = 5
 FONT = '/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf'
 
 
@@ -36,7 +36,8 @@ def contact_sheet(rendered):
         thumbnail = _image(r.picture)
         thumbnail.thumbnail(THUMBNAIL, Image.Resampling.LANCZOS)
         sheet.paste(thumbnail, (x, y))
-        draw.text((x, y + height + 3), r.shot.label, fill='#111827', font=_font(11))
+        scene = r.shot.scene.stem.split('_')[0]
+        draw.text((x, y + height + 3), f'{scene} {r.shot.label}', fill='#111827', font=_font(11))
     file = io.BytesIO()
     sheet.save(file, 'JPEG', quality=88)
     return file.getvalue()

@@ -16,7 +16,9 @@ from replay_render import Progress
 
 def render_all(studio, topics):
     """{name of a shot: Rendered}, in the page's order."""
-    shots = {shot.name: shot for topic in topics for sheet in topic.sheets for shot in sheet.shots}
+    shots = {}
+    for shot in (shot for topic in topics for sheet in topic.sheets for shot in sheet.shots):
+        shots.setdefault(shot.name, shot)  # another sheet's may be the same picture
     progress, rendered = Progress(len(shots)), {}
     for shot in shots.values():
         before = studio.rendered
