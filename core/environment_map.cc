@@ -117,9 +117,10 @@ class Compiler {
 
 }  // namespace
 
-EnvironmentMap make_environment_map(const Image& picture, double diagonal) {
+EnvironmentMap make_environment_map(const Image& picture, double diagonal, bool y_up) {
   EnvironmentMap map;
   if (picture.width == 0 || !Compiler(picture, map).run()) return {};
+  map.y_up = y_up;
   map.reach = static_cast<float>(std::exp2(std::ceil(std::log2(2 * diagonal))));
   return map;
 }

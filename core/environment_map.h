@@ -1,5 +1,5 @@
-// The radiance map around a scene, as kernels look it up and sample it. A direction's place in the picture, with z up and
-// row 0 at the top: u = 1/2 - atan2(y, x) / (2 pi) from the left, v = acos(z) / pi from the top. Radiance is bilinear between
+// The radiance map around a scene, as kernels look it up and sample it. A direction's place in the picture, with z up (or
+// y, of scenes that have it so: then z for -y and y for z below) and row 0 at the top: u = 1/2 - atan2(y, x) / (2 pi) from the left, v = acos(z) / pi from the top. Radiance is bilinear between
 // the texels' centres, wraps around in u, and keeps the outer rows' up to the poles.
 //
 // A cell lies between four centres: cell (row, column) of rows 0 .. height and columns 0 .. width - 1 has the centres of rows
@@ -34,6 +34,7 @@ struct EnvironmentMap {
 
   uint32_t width = 0;   // of the picture, in texels; 0: no map
   uint32_t height = 0;  // of the picture
+  bool y_up = false;    // of the world: its (x, y, z) are (x, -z, y) of the map
   float reach = 0;      // a segment of this length, a power of two, from anywhere on the scene ends outside of it
   AlignedVector<Texel> texels;      // (height + 2) x (width + 1): the outer rows and the first column stand twice
   AlignedVector<Row> rows;          // height + 1
@@ -49,8 +50,8 @@ struct EnvironmentMap {
 constexpr uint32_t kMaxEnvironmentSide = 1 << 16;
 constexpr uint64_t kMaxEnvironmentTexels = uint64_t{1} << 27;
 
-// From a picture of finite radiance >= 0, within the sizes above, around a scene of this diagonal. Empty for a picture that is
-// black, or of no size.
-EnvironmentMap make_environment_map(const Image& picture, double diagonal);
+// From a picture of finite radiance >= 0, within the sizes above, around a scene of this diagonal, which has y up
+// or z. Empty for a picture that is black, or of no size.
+EnvironmentMap make_environment_map(const Image& picture, double diagonal, bool y_up = false);
 
 }  // namespace lanewise

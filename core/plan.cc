@@ -72,7 +72,7 @@ class Planner {
     add_spheres();
     find_blocking_faces(plan_, corners_, spheres_);
     find_slabs(plan_);
-    plan_.environment = make_environment_map(scene_.environment, box_.diagonal());
+    plan_.environment = make_environment_map(scene_.environment, box_.diagonal(), scene_.up.y > 0.5);
     if (!plan_.environment.empty()) let_all_faces_block(plan_);
     build_trees();
     focus();

@@ -60,8 +60,17 @@ HWY_INLINE VI TakeWhole(VF& x, uint32_t most) {
   return whole;
 }
 
-// dir: of any length but 0.
-HWY_INLINE Sky SkyAlong(const EnvironmentMap& map, const Vec3& dir) {
+// Between the axes of the world and of the map.
+HWY_INLINE Vec3 WorldToSky(const EnvironmentMap& map, const Vec3& w) {
+  return map.y_up ? Vec3{w.x, hn::Neg(w.z), w.y} : w;
+}
+HWY_INLINE Vec3 SkyToWorld(const EnvironmentMap& map, const Vec3& w) {
+  return map.y_up ? Vec3{w.x, w.z, hn::Neg(w.y)} : w;
+}
+
+// world: of any length but 0.
+HWY_INLINE Sky SkyAlong(const EnvironmentMap& map, const Vec3& world) {
+  const Vec3 dir = WorldToSky(map, world);
   const VF width = Splat(static_cast<float>(map.width));
   SkyPlace place;
   place.x = hn::MulSub(hn::Sub(Splat(0.5f), Atan2Turns(dir.y, dir.x)), width, Splat(0.5f));

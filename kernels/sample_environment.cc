@@ -44,7 +44,8 @@ void SampleEnvironment(const Plan& plan, const PathState& s, Range range) {
     VF sin, cos;
     SinCos2Pi(u, sin, cos);
     const VF across = hn::Mul(reach, r);
-    StoreVec3({hn::Neg(hn::Mul(across, cos)), hn::Mul(across, sin), hn::Mul(reach, z)}, s.l_x, s.l_y, s.l_z, i);
+    const Vec3 l = {hn::Neg(hn::Mul(across, cos)), hn::Mul(across, sin), hn::Mul(reach, z)};
+    StoreVec3(SkyToWorld(map, l), s.l_x, s.l_y, s.l_z, i);
     const Sky sky = SkyAt(map, place);
     hn::Store(sky.pdf, d, s.l_pdf + i);
     StoreVec3(sky.radiance, s.c_r, s.c_g, s.c_b, i);

@@ -172,7 +172,8 @@ class Writer {
     set(node, "string", "filename", path);
     pugi::xml_node transform = node.append_child("transform");
     transform.append_attribute("name") = "to_world";
-    transform.append_child("matrix").append_attribute("value") = "0 0 1 0  1 0 0 0  0 1 0 0  0 0 0 1";
+    transform.append_child("matrix").append_attribute("value") =
+        scene_.up.y > 0.5 ? "0 0 1 0  0 1 0 0  -1 0 0 0  0 0 0 1" : "0 0 1 0  1 0 0 0  0 1 0 0  0 0 0 1";
   }
 
   void add_surface(pugi::xml_node node, uint32_t material) {

@@ -58,6 +58,21 @@ double solid_angle(const EnvironmentMap& map, size_t row) {
 
 }  // namespace
 
+TEST_CASE("environment: up is where the scene has it") {
+  Scene scene = test::test_outdoors();
+  scene.environment = numbered_map(8, 4);
+  const Plan z_up = make_plan(scene, {});
+  scene.up = {0, 1, 0};
+  const Plan y_up = make_plan(scene, {});
+  for (const Vec& d : {Vec(0.2, 0.3, 0.9), Vec(-0.7, 0.1, -0.2), Vec(0.4, -0.8, 0.1)}) {
+    const Vec turned(d.x, d.z, -d.y);
+    CHECK(reference::sky_along(y_up.environment, turned).radiance ==
+          reference::sky_along(z_up.environment, d).radiance);
+  }
+  test::check_kernel(y_up, "environment");
+  test::check_kernel(y_up, "sample_environment");
+}
+
 TEST_CASE("environment: u from the left is 1/2 - atan2(y, x) / 2 pi, v from the top acos(z) / pi") {
   const EnvironmentMap map = make_environment_map(numbered_map(8, 4), 1);
   for (uint32_t y = 0; y < 4; ++y) {

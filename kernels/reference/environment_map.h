@@ -50,7 +50,17 @@ uint32_t take_whole(T& x, uint32_t most) {
 }
 
 template <class T>
-Sky<T> sky_along(const EnvironmentMap& map, const Vec3<T>& dir) {
+Vec3<T> world_to_sky(const EnvironmentMap& map, const Vec3<T>& w) {
+  return map.y_up ? Vec3<T>(w.x, -w.z, w.y) : w;
+}
+template <class T>
+Vec3<T> sky_to_world(const EnvironmentMap& map, const Vec3<T>& w) {
+  return map.y_up ? Vec3<T>(w.x, w.z, -w.y) : w;
+}
+
+template <class T>
+Sky<T> sky_along(const EnvironmentMap& map, const Vec3<T>& world) {
+  const Vec3<T> dir = world_to_sky(map, world);
   SkyPlace<T> place;
   place.x = (T(0.5) - atan2_turns(dir.y, dir.x)) * T(map.width) - T(0.5);
   if (place.x < 0) place.x += T(map.width);

@@ -24,7 +24,8 @@ void sample_environment(const Plan& plan, Path<T>& p) {
 
   const T phi = 2 * std::numbers::pi_v<T> * (T(place.column) + place.x + T(0.5)) / T(map.width);
   const Vec3<T> direction(-r * std::cos(phi), r * std::sin(phi), z);
-  LANEWISE_SET_VEC3(p, l, T(map.reach) * direction);
+  const Vec3<T> l = sky_to_world(map, T(map.reach) * direction);
+  LANEWISE_SET_VEC3(p, l, l);
   const Sky<T> sky = sky_at(map, place);
   p.l_pdf = sky.pdf;
   LANEWISE_SET_RGB(p, c, sky.radiance);
