@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/framing.h"
+#include "core/plan.h"
 #include "scenes/load.h"
 #include "tests/formats_harness.h"
 #include "tests/program.h"
@@ -196,6 +197,17 @@ TEST_CASE("convert command: eta and k of metals as Mitsuba and pbrt take them") 
   CHECK(xml.find("value=\"beckmann\"") != std::string::npos);
   CHECK(pbrt.find("\"spectrum eta\" [360 1.3284 466 1.3284 549 0.42833 614 0.21646 830 0.21646]") != std::string::npos);
   CHECK(pbrt.find("\"float roughness\" [0.05] \"bool remaproughness\" false") != std::string::npos);
+}
+
+TEST_CASE("convert command: autofocus is a distance for others") {
+  if (nothing_to_test()) return;
+  const TemporaryFolder folder;
+  REQUIRE(convert(folder, {box(), "-b", "0.01", "--autofocus", "-f", "box.xml"}).exit_code == 0);
+  const pugi::xml_document document = read_xml(folder.file("box.xml"));
+  Settings settings;
+  settings.autofocus = true;
+  const double distance = make_plan(load_scene(box()), settings).settings.focal_distance;
+  CHECK(std::stod(value(document.child("scene").child("sensor"), "focus_distance")) == doctest::Approx(distance));
 }
 
 TEST_CASE("convert command: wrong input gives one line, an exit code and no file") {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/file.h"
+#include "core/plan.h"
 #include "core/types.h"
 #include "scenes/export.h"
 #include "tools/chosen_scene.h"
@@ -59,9 +60,11 @@ void run_convert(const ConvertOptions& o) {
   ProgressLine progress(o.render.quiet);
   progress.show("loading " + o.render.scene);
   const Scene scene = load_chosen_scene(o.render);
+  Settings settings = o.render.settings;
+  if (settings.autofocus) settings.focal_distance = make_plan(scene, settings).settings.focal_distance;
   progress.show("writing " + o.output);
   const auto convert = target == Target::kMitsuba ? export_mitsuba : export_pbrt;
-  const ExportedScene exported = convert(scene, o.render.settings, folder.filename().string());
+  const ExportedScene exported = convert(scene, settings, folder.filename().string());
   write_scene(o.output, folder, exported);
   progress.clear();
   if (o.render.quiet) return;
