@@ -166,9 +166,9 @@ TEST_CASE("formats: a file with bytes changed is loaded or gives an error") {
   const TemporaryFolder folder;
   test::write_boxes(folder);
 #ifdef NDEBUG
-  constexpr int kTimes = 300;
+  constexpr int kTimes = 60;
 #else
-  constexpr int kTimes = 15;
+  constexpr int kTimes = 4;
 #endif
   uint32_t state = 1;
   const auto draw = [&state](size_t below) {  // a linear congruential generator's upper bits
