@@ -117,7 +117,7 @@ TEST_CASE(
   const json figures = json::parse(read_text(folder.file("out/replay.json")));
   CHECK(figures["pictures"].size() >= 30);
   CHECK(figures["notes"].size() >= 1);
-  CHECK(figures["claims"].size() == (kClaims ? 5 : 0));
+  CHECK(figures["claims"].size() == (kClaims ? 6 : 0));
   for (const json& claim : figures["claims"]) {
     CAPTURE(claim["quote"]);
     const auto verdict = claim["verdict"].get<std::string>();
