@@ -93,12 +93,12 @@ class Planner {
     copy(framing.right, out.right);
     copy(framing.up, out.up);
     out.pixel = static_cast<float>(framing.pixel);
+    out.lens_radius = static_cast<float>(plan_.settings.lens_radius);
   }
 
   void focus() {
     Settings& settings = plan_.settings;
     if (settings.autofocus) settings.focal_distance = distance_at_center(plan_);
-    plan_.camera.lens_radius = static_cast<float>(settings.lens_radius);
     plan_.camera.lens_angle = static_cast<float>(settings.lens_radius / settings.focal_distance);
   }
 
@@ -247,7 +247,7 @@ class Planner {
   const Scene& scene_;
   Scene* expendable_;
   Bounds box_;
-  Plan plan_;
+  Plan plan_{};
   std::vector<bool> is_flat_mesh_;
   std::vector<FlatTriangle> corners_;  // of all triangles, by prim; in the end of those in the tree
   std::vector<bool> in_tree_;          // which of them go there

@@ -66,6 +66,18 @@ TEST_CASE("lens: what is in focus is as sharp as by a pinhole, the rest is not")
   }
 }
 
+TEST_CASE("lens: the margins of quads cover rays from all of it") {
+  Settings settings;
+  settings.lens_radius = 100;  // further than the cards reach
+  const Plan plan = make_plan(two_cards(), settings);
+  CHECK(plan.camera.lens_radius == 100);
+  REQUIRE(plan.flat_quads.size() == 2);
+  for (const FlatQuad& quad : plan.flat_quads) {
+    CHECK(quad.reach >= 200);
+    CHECK(quad.reach < 220);
+  }
+}
+
 TEST_CASE("lens: autofocus is at the distance of what is at the centre") {
   Settings settings;
   settings.width = settings.height = 40;
