@@ -113,6 +113,9 @@ TEST_CASE("render: what was scattered once, twice, ... and not at all adds up to
   check(settings, test::test_scene());
   settings.direct = Direct::kHemisphere;
   check(settings, test::test_box());
+  settings = small();
+  settings.estimate_error = false;
+  check(settings, test::test_outdoors());
 }
 
 TEST_CASE("render: the same bits for any number of threads and any wave") {
