@@ -58,6 +58,10 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
   memory.add(
       "lights, materials", "by index", "",
       bytes_of(plan.materials) + bytes_of(plan.lights) + bytes_of(plan.light_patches) + bytes_of(plan.light_table));
+  if (!plan.textures.empty()) {
+    memory.add("textures", "8-bit texels", "4 bytes a texel, 8 floats a primitive to find them by",
+               bytes_of(plan.textures) + bytes_of(plan.texels) + bytes_of(plan.prim_texture));
+  }
   if (!plan.environment.empty()) {
     memory.add("environment", "by cell", "corners with the density, sums of chances", plan.environment.bytes());
   }

@@ -127,6 +127,8 @@ std::string why_so(const Plan& plan, Stage stage) {
     case Stage::kSurface:
       return plan.prim_normals.empty() ? "flat faces alone: no corner normals to fetch and mix"
                                        : "corner normals, mixed by barycentric weights";
+    case Stage::kTexture:
+      return count_of(plan.textures.size() - 1, "texture") + ": the albedo of every diffuse surface";
     case Stage::kSampleLight:
       return count_of(plan.lights.size(), "light") + ", " + count_of(settings.light_samples, "sample") +
              " each: " + count_of(plan.lights.size() * settings.light_samples, "call") + " a bounce" +
@@ -176,12 +178,18 @@ std::string why_left_out(const Plan& plan, Stage stage) {
     case Stage::kConnectSphere:
     case Stage::kOccludeConnection:
       return why_no_connections(plan);
+    case Stage::kTexture:
+      return plan.textures.empty() ? "no surface has a texture" : why_nothing_scatters(plan);
+    case Stage::kLightTextured:
+      return plan.textures.empty() ? "no surface has a texture" : why_no_light_stage(plan, kDiffuse);
+    case Stage::kShadeTextured:
+      return plan.textures.empty() ? "no surface has a texture" : why_no_material(plan, kDiffuse);
     case Stage::kLightDiffuse:
-      return why_no_light_stage(plan, kDiffuse);
+      return plan.textures.empty() ? why_no_light_stage(plan, kDiffuse) : "the scene has textures: light_textured";
     case Stage::kLightMicrofacet:
       return why_no_light_stage(plan, kMicrofacet);
     case Stage::kShadeDiffuse:
-      return why_no_material(plan, kDiffuse);
+      return plan.textures.empty() ? why_no_material(plan, kDiffuse) : "the scene has textures: shade_textured";
     case Stage::kShadeMicrofacet:
       return why_no_material(plan, kMicrofacet);
     case Stage::kShadeMirror:

@@ -1,38 +1,18 @@
 #include "core/image_io.h"
 
-#include <algorithm>
 #include <bit>
 #include <cctype>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <new>
 #include <stdexcept>
 
 #include "core/file.h"
 #include "core/image_exr.h"
 #include "core/image_hdr.h"
-#include "core/srgb.h"
+#include "core/image_stb.h"
 #include "core/types.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#include <stb/stb_image.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STBI_WRITE_NO_STDIO
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace lanewise {
 namespace {
@@ -40,7 +20,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "PFM is written with a negative scale: little-endian");
 
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
-constexpr uint64_t kMaxPngBytes = 0x7FFFFFFF;  // stb counts in int
 
 enum class Format { kPng, kExr, kPfm, kHdr };
 
@@ -60,23 +39,6 @@ void check_size(uint64_t width, uint64_t height) {
   }
 }
 
-void append_to_string(void* context, void* data, int size) {
-  static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<size_t>(size));
-}
-
-std::string encode_png(const Image& image) {
-  std::vector<uint8_t> bytes(image.rgb.size());
-  std::transform(image.rgb.begin(), image.rgb.end(), bytes.begin(), [](float v) {
-    if (!std::isfinite(v)) return uint8_t{0};
-    return static_cast<uint8_t>(std::lround(255 * srgb_from_linear(std::clamp(v, 0.0f, 1.0f))));
-  });
-  std::string png;
-  const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-  if (!stbi_write_png_to_func(append_to_string, &png, width, height, 3, bytes.data(), 3 * width))
-    throw std::bad_alloc();
-  return png;
-}
-
 std::string encode_pfm(const Image& image) {
   std::string pfm = "PF\n" + std::to_string(image.width) + " " + std::to_string(image.height) + "\n-1.0\n";
   pfm.reserve(pfm.size() + image.rgb.size() * sizeof(float));
@@ -84,26 +46,6 @@ std::string encode_pfm(const Image& image) {
     pfm.append(reinterpret_cast<const char*>(image.pixel(0, y)), size_t{3} * image.width * sizeof(float));
   }
   return pfm;
-}
-
-Image decode_png(const std::string& bytes) {
-  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  const int size = static_cast<int>(bytes.size());
-  const auto damaged = [] { return Error(std::string("damaged picture (") + stbi_failure_reason() + ")"); };
-  int width = 0, height = 0, channels = 0;
-  if (!stbi_info_from_memory(data, size, &width, &height, &channels)) throw damaged();
-  check_size(static_cast<uint64_t>(width), static_cast<uint64_t>(height));
-  // 8-bit pictures pass through 16 bits exactly: v becomes 257 v.
-  const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
-      stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), &stbi_image_free);
-  if (!pixels) throw damaged();
-  std::vector<float> linear(65536);
-  for (size_t v = 0; v < linear.size(); ++v)
-    linear[v] = static_cast<float>(linear_from_srgb(static_cast<double>(v) / 65535));
-  Image image(static_cast<uint32_t>(width), static_cast<uint32_t>(height));
-  std::transform(pixels.get(), pixels.get() + image.rgb.size(), image.rgb.begin(),
-                 [&](stbi_us v) { return linear[v]; });
-  return image;
 }
 
 Image decode_pfm(const std::string& bytes) {
@@ -140,8 +82,8 @@ Image read_any(const std::string& path) {
     return read_exr(path, kMaxPixels);
   }
   const std::string bytes =
-      read_file(path, format == Format::kPng ? kMaxPngBytes : kMaxPixels * 3 * sizeof(float) + 100);
-  if (format == Format::kPng) return decode_png(bytes);
+      read_file(path, format == Format::kPng ? kMaxStbBytes : kMaxPixels * 3 * sizeof(float) + 100);
+  if (format == Format::kPng) return decode_png(bytes, kMaxPixels);
   if (format == Format::kHdr) return decode_hdr(bytes, kMaxPixels);
   return decode_pfm(bytes);
 }

@@ -55,7 +55,10 @@ namespace lanewise {
   LOCAL(uint32_t, via, "connection: by way of which of Plan::connected_spheres")                         \
   LOCAL(float, c_r, "radiance that the light sample adds to L if it is seen; not yet what via reflects") \
   LOCAL(float, c_g, "")                                                                                  \
-  LOCAL(float, c_b, "")
+  LOCAL(float, c_b, "")                                                                                  \
+  LOCAL(float, a_r, "albedo of a diffuse surface, where the scene has textures")                         \
+  LOCAL(float, a_g, "")                                                                                  \
+  LOCAL(float, a_b, "")
 
 constexpr int kRetiredFields = 4;  // slot and L
 

@@ -12,6 +12,7 @@
 #include "core/plan_connections.h"
 #include "core/plan_flat.h"
 #include "core/plan_lights.h"
+#include "core/plan_textures.h"
 #include "core/plan_trees.h"
 #include "core/ray_offset.h"
 #include "core/scene.h"
@@ -67,6 +68,7 @@ class Planner {
   Plan run() {
     place_camera();
     for (const Material& m : scene_.materials) plan_.materials.push_back(compile(m));
+    add_textures(scene_, plan_);
     choose_flat_meshes();
     add_triangles();
     add_spheres();
@@ -173,6 +175,7 @@ class Planner {
     corners.prim = plan_.triangles++;
     corners_.push_back(corners);
     add_primitive(n, glm::dot(n, (v[0] + v[1] + v[2]) / 3.0), triangle_offset(corners.v), mesh.material);
+    if (!plan_.textures.empty()) map_triangle(scene_, mesh, index, v, n, plan_);
 
     bool smooth = false;
     for (size_t k = 0; k < 3; ++k) {
@@ -191,6 +194,7 @@ class Planner {
       out.prim = plan_.triangles + plan_.spheres++;
       spheres_.push_back(out);
       add_primitive(relative(sphere.center), sphere.radius, sphere_offset(out.center, out.radius), sphere.material);
+      if (!plan_.textures.empty()) plan_.prim_texture.resize(plan_.prim_texture.size() + 8, 0.0f);
       if (scene_.materials[sphere.material].kind == Material::Kind::kEmission) {
         add_sphere_light(plan_, out, scene_.materials[sphere.material].radiance);
         plan_.prim_light.back() = static_cast<uint32_t>(plan_.lights.size() - 1);
@@ -222,13 +226,15 @@ class Planner {
   }
 
   void choose_stages() {
-    constexpr ShadeStages kAll[] = {
-        {kDiffuse, Stage::kLightDiffuse, Stage::kShadeDiffuse},
+    const bool textured = !plan_.textures.empty();
+    const ShadeStages all[] = {
+        {kDiffuse, textured ? Stage::kLightTextured : Stage::kLightDiffuse,
+         textured ? Stage::kShadeTextured : Stage::kShadeDiffuse},
         {kMicrofacet, Stage::kLightMicrofacet, Stage::kShadeMicrofacet},
         {kMirror, Stage::kCount, Stage::kShadeMirror},
         {kGlass, Stage::kCount, Stage::kShadeGlass},
     };
-    for (const ShadeStages& stages : kAll) {
+    for (const ShadeStages& stages : all) {
       if (has_bin_[stages.bin]) plan_.shade_stages.push_back(stages);
     }
   }

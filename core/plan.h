@@ -32,7 +32,8 @@ struct alignas(64) PlanMaterial {
   float alpha;
   float eta[3];
   float k[3];
-  float pad[2];
+  uint32_t texture;  // index into Plan::textures; 0 where there are none
+  uint32_t pad;
 };
 
 // Where gathers find a member: float number `member` of the material.
@@ -45,6 +46,14 @@ enum MaterialMember : uint32_t {
   kK = 11,
   kMaterialStride = 16
 };
+
+// A texture's texels are Plan::texels[first + y width + x], row 0 at the top.
+struct alignas(16) PlanTexture {
+  float width, height;
+  uint32_t first;
+  uint32_t pad;
+};
+constexpr uint32_t kTextureStride = 4;
 
 // A parallelogram corner + u e1 + v e2 with u, v in [0, 1], or its half with u + v <= 1.
 struct alignas(64) LightPatch {
@@ -190,6 +199,11 @@ struct Plan {
   AlignedVector<uint32_t> prim_bin;       // Bin
   AlignedVector<uint32_t> prim_light;     // index into lights; 0 for what is no emitter
   AlignedVector<PlanMaterial> materials;
+  AlignedVector<PlanTexture> textures;  // the first is white, for surfaces without one; empty: no surface has one
+  AlignedVector<uint32_t> texels;       // as Texture has them
+  AlignedVector<float>
+      prim_texture;  // 8 a primitive: a, a_0, b, b_0: its point p is at column a.p + a_0, row b.p + b_0 of
+                     // its texture, with texel (x, y) centred on (x, y); empty as textures
   AlignedVector<LightPatch> light_patches;
   std::vector<PlanLight> lights;
   AlignedVector<float> light_table;                // 4 a light, to gather by light: radiance, area

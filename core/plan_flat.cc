@@ -130,6 +130,20 @@ bool make_slab(const PlanCamera& camera, FlatQuad& p, FlatQuad& q, FlatSlab& sla
   return true;
 }
 
+// Whether both triangles map the parallelogram's corners to the same place of their texture, to a thousandth of a texel.
+bool same_texture(const Plan& plan, const Parallelogram& p, uint32_t first, uint32_t second) {
+  if (plan.textures.empty()) return true;
+  const float *a = &plan.prim_texture[8 * size_t{first}], *b = &plan.prim_texture[8 * size_t{second}];
+  for (const dvec3& v : {p.corner, p.corner + p.e1, p.corner + p.e2, p.corner + p.e1 + p.e2}) {
+    for (const int axis : {0, 4}) {
+      const double at_a = glm::dot(to_dvec3(a + axis), v) + a[axis + 3],
+                   at_b = glm::dot(to_dvec3(b + axis), v) + b[axis + 3];
+      if (std::abs(at_a - at_b) > 1e-3) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles) {
@@ -138,6 +152,11 @@ void add_flat_mesh(Plan& plan, std::span<const FlatTriangle> triangles) {
     const FlatTriangle& first = triangles[p.first];
     if (p.is_triangle()) {
       plan.flat_triangles.push_back(first);
+      continue;
+    }
+    if (!same_texture(plan, p, first.prim, triangles[p.second].prim)) {
+      plan.flat_triangles.push_back(first);
+      plan.flat_triangles.push_back(triangles[p.second]);
       continue;
     }
     const FlatQuad quad = make_quad(p, first.prim, camera_reach);

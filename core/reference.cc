@@ -23,13 +23,14 @@
 #include "kernels/reference/shade_microfacet.h"
 #include "kernels/reference/shade_mirror.h"
 #include "kernels/reference/surface.h"
+#include "kernels/reference/texture.h"
 
 namespace lanewise {
 namespace {
 
 template <class T>
 void weigh_light(const Plan& plan, Path<T>& p) {
-  if (p.bin == kDiffuse) reference::light_diffuse(plan, p);
+  if (p.bin == kDiffuse) plan.textures.empty() ? reference::light_diffuse(plan, p) : reference::light_textured(plan, p);
   if (p.bin == kMicrofacet) reference::light_microfacet(plan, p);
 }
 
@@ -37,7 +38,7 @@ template <class T>
 void shade(const Plan& plan, Path<T>& p) {
   switch (p.bin) {
     case kDiffuse:
-      return reference::shade_diffuse(plan, p);
+      return plan.textures.empty() ? reference::shade_diffuse(plan, p) : reference::shade_textured(plan, p);
     case kMicrofacet:
       return reference::shade_microfacet(plan, p);
     case kMirror:
@@ -104,6 +105,7 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
     }
     if (p.bin >= kSurfaceBins) return profile.count_paths(bounce, 1);
     reference::surface(plan, p);
+    if (!plan.textures.empty() && p.bin == kDiffuse) reference::texture(plan, p);
     add_direct_light(plan, p, profile);
     shade(plan, p);
     reference::roulette(plan, p);

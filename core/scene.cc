@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "core/texture.h"
 #include "core/types.h"
 
 namespace lanewise {
@@ -10,6 +12,9 @@ namespace {
 
 // Far beyond any scene in metres, and far enough below float's range that products of three coordinates stay finite.
 constexpr double kMaxCoordinate = 1e15;
+
+// With so many repeats of a texture a float finds no texel any more.
+constexpr double kMaxTexcoord = 1e6;
 
 // A triangle whose area is below this share of its longest edge squared has no usable normal in any precision.
 constexpr double kFlatRatio = 1e-14;
@@ -47,6 +52,16 @@ void check_mesh(const Scene& scene, const Mesh& mesh) {
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.triangles.size()) {
     fail(scene, who + "has normals for some triangles only");
   }
+  if (!mesh.texcoords.empty() && mesh.texcoords.size() != mesh.triangles.size()) {
+    fail(scene, who + "has texture coordinates for some triangles only");
+  }
+  for (const auto& triangle : mesh.texcoords) {
+    for (const glm::dvec2& at : triangle) {
+      if (!(std::abs(at.x) <= kMaxTexcoord && std::abs(at.y) <= kMaxTexcoord)) {  // so that NaN fails
+        fail(scene, who + "has a texture coordinate that is not finite or above 1e6");
+      }
+    }
+  }
   for (const auto& triangle : mesh.triangles) {
     for (const uint32_t index : triangle) {
       if (index >= mesh.positions.size()) {
@@ -81,12 +96,45 @@ size_t drop_flat_triangles(Mesh& mesh, const glm::dvec3& center) {
     if (!has_area(corners(mesh.positions, triangle)) || !has_area(corners(rounded, triangle))) continue;
     mesh.triangles[kept] = triangle;
     if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[i];
+    if (!mesh.texcoords.empty()) mesh.texcoords[kept] = mesh.texcoords[i];
     ++kept;
   }
   const size_t dropped = mesh.triangles.size() - kept;
   mesh.triangles.resize(kept);
   if (!mesh.normals.empty()) mesh.normals.resize(kept);
+  if (!mesh.texcoords.empty()) mesh.texcoords.resize(kept);
   return dropped;
+}
+
+// A material like that one in the mean colour of its texture; the same for all that ask.
+uint32_t without_texture(Scene& scene, std::map<uint32_t, uint32_t>& made, uint32_t material) {
+  const auto [place, is_new] = made.try_emplace(material, static_cast<uint32_t>(scene.materials.size()));
+  if (is_new) {
+    Material plain = scene.materials[material];
+    plain.reflectance *= mean(scene.textures[plain.texture]);
+    plain.texture = kNoTexture;
+    scene.materials.push_back(plain);
+  }
+  return place->second;
+}
+
+void settle_textures(Scene& scene) {
+  std::map<uint32_t, uint32_t> made;
+  const auto is_textured = [&](uint32_t material) { return scene.materials[material].texture != kNoTexture; };
+  const auto take_mean = [&](const std::string& who, uint32_t& material) {
+    scene.notices.push_back(who + " has a texture and no coordinates in it: rendered in its mean colour");
+    material = without_texture(scene, made, material);
+  };
+  for (Mesh& mesh : scene.meshes) {
+    if (!is_textured(mesh.material)) {
+      mesh.texcoords = {};
+    } else if (mesh.texcoords.empty()) {
+      take_mean("mesh \"" + mesh.name + '"', mesh.material);
+    }
+  }
+  for (Sphere& sphere : scene.spheres) {
+    if (is_textured(sphere.material)) take_mean("sphere \"" + sphere.name + '"', sphere.material);
+  }
 }
 
 void smooth_normals(Mesh& mesh) {
@@ -132,6 +180,7 @@ Bounds bounds(const Scene& scene) {
 void finish_scene(Scene& scene) {
   for (const Mesh& mesh : scene.meshes) check_mesh(scene, mesh);
   for (const Sphere& sphere : scene.spheres) check_sphere(scene, sphere);
+  settle_textures(scene);
 
   const glm::dvec3 center = bounds(scene).center();
   size_t dropped = 0;

@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/texture.h"
 
 namespace lanewise {
+
+constexpr uint32_t kNoTexture = ~0u;
 
 // Linear RGB values; unused members keep their defaults.
 struct Material {
@@ -18,6 +21,7 @@ struct Material {
   std::string name;
   Kind kind = Kind::kDiffuse;
   glm::dvec3 reflectance{0.0};    // diffuse albedo; mirror and glass: tint of reflection; each in [0, 1]
+  uint32_t texture = kNoTexture;  // diffuse: index into Scene::textures, whose colour reflectance multiplies
   glm::dvec3 transmittance{1.0};  // glass: tint of refraction, in [0, 1]
   double ior = 1.5;               // glass: index inside over index outside, > 0
   double alpha = 0.1;             // microfacet: Beckmann roughness, RMS slope times sqrt(2), in (0, 1] or above
@@ -32,6 +36,9 @@ struct Mesh {
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into positions, counter-clockwise seen from the front
   std::vector<std::array<glm::dvec3, 3>>
       normals;  // the file's unit normals at each triangle's corners; empty: it has none
+  std::vector<std::array<glm::dvec2, 3>>
+      texcoords;  // where in a texture each triangle's corners are: (0, 0) its lower left, (1, 1) its upper right, repeated
+                  // beyond; empty: it has none
   uint32_t material = 0;
 };
 
@@ -53,6 +60,7 @@ struct Camera {
 struct Scene {
   std::string path;  // where it was read from, for messages
   std::vector<Material> materials;
+  std::vector<Texture> textures;
   std::vector<Mesh> meshes;
   std::vector<Sphere> spheres;
   std::vector<Camera> cameras;
@@ -79,7 +87,8 @@ Bounds bounds(const Scene& scene);
 
 // The last step of every loader: drops zero-area triangles (with a notice that counts them) and meshes left empty, and
 // throws Error, naming scene.path, for what cannot be rendered: no geometry, no camera, coordinates that are not finite
-// or above 1e15, indices out of range.
+// or above 1e15, indices out of range. What has a texture but no coordinates in it (spheres never have) gets a material of
+// its mean colour, with a notice; coordinates that no texture needs are dropped.
 void finish_scene(Scene& scene);
 
 // Throws Error, naming scene.path, if nothing in it nor around it emits light.

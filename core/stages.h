@@ -15,16 +15,19 @@ namespace lanewise {
   X(kEnvironment, environment)              \
   X(kRetire, retire)                        \
   X(kSurface, surface)                      \
+  X(kTexture, texture)                      \
   X(kSampleLight, sample_light)             \
   X(kSampleEnvironment, sample_environment) \
   X(kSampleHemisphere, sample_hemisphere)   \
   X(kConnectSphere, connect_sphere)         \
   X(kLightDiffuse, light_diffuse)           \
+  X(kLightTextured, light_textured)         \
   X(kLightMicrofacet, light_microfacet)     \
   X(kOcclude, occlude)                      \
   X(kOccludeConnection, occlude_connection) \
   X(kGatherEmission, gather_emission)       \
   X(kShadeDiffuse, shade_diffuse)           \
+  X(kShadeTextured, shade_textured)         \
   X(kShadeMicrofacet, shade_microfacet)     \
   X(kShadeMirror, shade_mirror)             \
   X(kShadeGlass, shade_glass)               \

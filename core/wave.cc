@@ -21,6 +21,8 @@ Kernel* kernel_of(Stage stage) {
       return retire;
     case Stage::kSurface:
       return surface;
+    case Stage::kTexture:
+      return texture;
     case Stage::kSampleLight:
       return sample_light;
     case Stage::kSampleEnvironment:
@@ -29,6 +31,8 @@ Kernel* kernel_of(Stage stage) {
       return sample_hemisphere;
     case Stage::kLightDiffuse:
       return light_diffuse;
+    case Stage::kLightTextured:
+      return light_textured;
     case Stage::kLightMicrofacet:
       return light_microfacet;
     case Stage::kOcclude:
@@ -41,6 +45,8 @@ Kernel* kernel_of(Stage stage) {
       return occlude_connection;
     case Stage::kShadeDiffuse:
       return shade_diffuse;
+    case Stage::kShadeTextured:
+      return shade_textured;
     case Stage::kShadeMicrofacet:
       return shade_microfacet;
     case Stage::kShadeMirror:
@@ -82,6 +88,7 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     live = bins.span(0, kSurfaceBins);
     paths = bins.paths(0, kSurfaceBins);
     run(Stage::kSurface, live, paths);
+    if (!plan_.textures.empty()) run(Stage::kTexture, bins[kDiffuse]);
     add_direct_light(bins);
     for (const ShadeStages& stages : plan_.shade_stages) run(stages.shade, bins[stages.bin]);
     if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);

@@ -73,9 +73,10 @@ constexpr KernelBounds kEmissionBounds = {.fields = {input_ulps("L", 3)}, .choic
 // samples of the environment. Connections do not count it.
 void environment(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kEnvironmentFields = {.reads = "d beta pdf L", .writes = "L"};
-// The density is another in the next cell of the map.
-constexpr KernelBounds kEnvironmentBounds = {.fields = {input_ulps("L", 3.5)},
-                                             .choice = {.margin = 4, .max_share = 2e-4}};
+// The density is another in the next cell of the map. In maps of many columns that differ much, the rounding of the azimuth in
+// turns shows above that of d, and more directions lie on edges of cells.
+constexpr KernelBounds kEnvironmentBounds = {.fields = {input_ulps("L", 5)},
+                                             .choice = {.margin = 4, .max_share = 2e-3}};
 
 // Hands the radiance of finished paths over to the wave's result, by slot.
 void retire(const Plan& plan, const PathState& s, Range range);
@@ -88,6 +89,14 @@ constexpr KernelFields kSurfaceFields = {.reads = "prim t u v o d", .writes = "o
 // The normals of small spheres magnify the rounding of the hit point.
 constexpr KernelBounds kSurfaceBounds = {
     .fields = {reach_ulps("o", 2), input_ulps("n", 0.5), input_ulps("s", 2), exact("err")}};
+
+// In scenes with textures, of diffuse surfaces: a = reflectance times the texture at the hit point, bilinear between the texels
+// around it, repeated beyond its edges.
+void texture(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kTextureFields = {.reads = "prim o", .writes = "a"};
+// Moving the point moves the place in the texture; across a texel's border the colour's slope changes, not the colour. A
+// millionth is a thousandth of the step between two of 8 bits' values.
+constexpr KernelBounds kTextureBounds = {.fields = {input_ulps("a", 4, 1e-6)}};
 
 // Samples light step.light by area and aims at it; l_pdf is 0 where the surface is behind the light.
 void sample_light(const Plan& plan, const PathState& s, Range range);
@@ -138,6 +147,14 @@ constexpr KernelFields kShadeDiffuseFields = {.reads = "pixel sample prim o d n 
 // The choices, here and for the other materials: the side that the path arrives from, and the side that the origin is moved to.
 constexpr KernelBounds kShadeDiffuseBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 2.5), ulps("pdf", 3)},
                                               .choice = {.margin = 4, .max_share = 2e-4}};
+// The same in scenes with textures, where `texture` has found the albedo.
+void light_textured(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kLightTexturedFields = {.reads = "d s beta l l_pdf c a step", .writes = "c"};
+constexpr KernelBounds kLightTexturedBounds = kLightDiffuseBounds;
+void shade_textured(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kShadeTexturedFields = {.reads = "pixel sample o d n s err beta a step",
+                                               .writes = "o d beta pdf"};
+constexpr KernelBounds kShadeTexturedBounds = kShadeDiffuseBounds;
 // Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
 void light_microfacet(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kLightMicrofacetFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};

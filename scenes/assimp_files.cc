@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/types.h"
+#include "scenes/own_file.h"
 #include "scenes/quoted.h"
 
 namespace lanewise {
@@ -47,32 +48,18 @@ class MemoryStream : public Assimp::IOStream {
   size_t at_ = 0;
 };
 
-// "" where there is no such file.
-fs::path real_path(const fs::path& path) {
-  std::error_code error;
-  const fs::path real = fs::canonical(path, error);
-  return error ? fs::path() : real;
-}
-
 }  // namespace
 
 SceneFiles::SceneFiles(const std::string& path, const std::string& text, std::vector<std::string>& missed)
     : path_(path), text_(text), missed_(missed) {}
 
-bool SceneFiles::is_own(const std::string& file) const {
-  const fs::path real = real_path(file), folder = real_path(fs::absolute(path_).parent_path());
-  std::error_code error;
-  if (real.empty() || folder.empty() || !fs::is_regular_file(real, error)) return false;
-  return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end();
-}
-
-bool SceneFiles::Exists(const char* file) const { return file == path_ || is_own(file); }
+bool SceneFiles::Exists(const char* file) const { return file == path_ || is_own_file(path_, file); }
 
 Assimp::IOStream* SceneFiles::Open(const char* file, const char* mode) {
   if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
   if (file == path_) return new MemoryStream(std::string_view(text_));
   std::string reason = "is no file in the scene's folder";
-  if (is_own(file)) {
+  if (is_own_file(path_, file)) {
     try {
       return new MemoryStream(read_file(file, kMaxFileBytes));
     } catch (const Error& e) {

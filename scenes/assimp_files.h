@@ -21,8 +21,6 @@ class SceneFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override;
 
  private:
-  bool is_own(const std::string& file) const;
-
   const std::string& path_;
   const std::string& text_;
   std::vector<std::string>& missed_;

@@ -59,6 +59,11 @@ Mesh read_mesh(const std::string& path, const aiMesh& from) {
     for (uint32_t i = 2; i < face.mNumIndices; ++i) {
       const uint32_t a = face.mIndices[0], b = face.mIndices[i - 1], c = face.mIndices[i];
       mesh.triangles.push_back({position[a], position[b], position[c]});
+      if (from.HasTextureCoords(0)) {
+        const aiVector3D* at = from.mTextureCoords[0];
+        mesh.texcoords.push_back(
+            {glm::dvec2(at[a].x, at[a].y), glm::dvec2(at[b].x, at[b].y), glm::dvec2(at[c].x, at[c].y)});
+      }
       if (from.mNormals == nullptr) continue;
       mesh.normals.push_back({to_dvec3(from.mNormals[a]), to_dvec3(from.mNormals[b]), to_dvec3(from.mNormals[c])});
     }

@@ -16,6 +16,7 @@
 #include "scenes/default_camera.h"
 #include "scenes/gltf_camera.h"
 #include "scenes/gltf_document.h"
+#include "scenes/gltf_image.h"
 #include "scenes/gltf_material.h"
 #include "scenes/obj_material.h"
 #include "scenes/placing.h"
@@ -74,6 +75,7 @@ class Loader {
     if (text_.empty()) throw Error(path_ + ": is empty");
     if (format_ == Format::kGltf) {
       gltf_.emplace(path_, text_);
+      images_.emplace(*gltf_, textures_);
       for (const std::string& text : gltf_->notices()) notice(text);
     }
     const std::string checked = gltf_ ? gltf_->geometry() : format_ == Format::kPly ? checked_ply(path_, text_) : "";
@@ -158,9 +160,10 @@ class Loader {
     std::vector<std::string> notices;
     Material material;
     if (const auto index = gltf_ ? gltf_->material_index(name) : std::nullopt) {
-      material = read_gltf_material(gltf_->root()["materials"].at(*index), notices);
+      const auto texture_of = [&](const JsonValue& info) { return images_->texture(info, notices); };
+      material = read_gltf_material(gltf_->root()["materials"].at(*index), texture_of, notices);
     } else if (format_ == Format::kObj && name != AI_DEFAULT_MATERIAL_NAME) {
-      material = read_obj_material(path_, from, notices);
+      material = read_obj_material(path_, from, textures_, notices);
     } else {
       material.name = "default";
       material.reflectance = glm::dvec3(0.5);
@@ -180,6 +183,8 @@ class Loader {
   std::optional<GltfDocument> gltf_;
   const aiScene* assimp_ = nullptr;
   Scene scene_;
+  Textures textures_{scene_};
+  std::optional<GltfImages> images_;
   std::map<uint32_t, Mesh> meshes_;  // in their own spaces, by Assimp's index
   std::map<uint32_t, uint32_t> materials_;
   std::vector<std::string> missed_;  // files that could not be read

@@ -15,6 +15,13 @@ struct Inputs {
   size_t position_offset = 0;
   size_t normal_offset = 0;
   std::optional<Source> normals;
+
+  struct Texcoords {
+    uint64_t set;
+    size_t offset;
+    Source source;
+  };
+  std::vector<Texcoords> texcoords;
 };
 
 // Polygons as runs of vertices in one list of tuples.
@@ -80,8 +87,18 @@ class MeshReader {
       inputs.normals = arrays_.read(document_.refer(input, "source", "source"));
       inputs.normal_offset = document_.count(input, "offset").value_or(0);
     }
+    if (document_.root().child("library_images")) read_texcoords(element, inputs);
     if (!has_positions) document_.fail(element, "has no input VERTEX");
     return inputs;
+  }
+
+  void read_texcoords(pugi::xml_node element, Inputs& inputs) {
+    for (const pugi::xml_node input : element.children("input")) {
+      if (std::strcmp(input.attribute("semantic").value(), "TEXCOORD") != 0) continue;
+      inputs.texcoords.push_back({document_.count(input, "set").value_or(0),
+                                  document_.count(input, "offset").value_or(0),
+                                  arrays_.read(document_.refer(input, "source", "source"), 2)});
+    }
   }
 
   void check_count(pugi::xml_node element, size_t found) const {
@@ -145,6 +162,7 @@ class MeshReader {
     Part& part = geometry_.parts.back();
     part.element = element;
     part.symbol = element.attribute("material").value();
+    for (const Inputs::Texcoords& input : inputs.texcoords) part.texcoords.push_back({input.set, {}});
     used_.clear();
 
     const uint32_t* tuple = outlines.indices.data();
@@ -178,6 +196,15 @@ class MeshReader {
         const uint32_t normal = tuple[inputs.normal_offset];
         if (normal >= inputs.normals->count) fail_index(part, "normal", normal, inputs.normals->count);
         normals[c] = (*inputs.normals)[normal];
+      }
+    }
+    for (size_t i = 0; i < inputs.texcoords.size(); ++i) {
+      const auto& [set, offset, source] = inputs.texcoords[i];
+      std::array<glm::dvec2, 3>& at = part.texcoords[i].corners.emplace_back();
+      for (size_t c = 0; c < 3; ++c) {
+        const uint32_t index = tuples[corners[c] * inputs.stride + offset];
+        if (index >= source.count) fail_index(part, "texture coordinate", index, source.count);
+        at[c] = glm::dvec2(source[index]);
       }
     }
     part.triangles.push_back(triangle);

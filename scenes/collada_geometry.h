@@ -15,11 +15,18 @@ namespace lanewise::collada {
 
 // One primitive element's triangles: what one material symbol covers.
 struct Part {
+  // Where in textures each triangle's corners are, by one of the element's inputs TEXCOORD.
+  struct Texcoords {
+    uint64_t set;
+    std::vector<std::array<glm::dvec2, 3>> corners;
+  };
+
   pugi::xml_node element;
   std::string symbol;                              // its material's; empty: none
   std::vector<glm::dvec3> positions;               // those that the triangles use
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into positions
   std::vector<std::array<glm::dvec3, 3>> normals;  // as in the file, of any length; empty: it has none
+  std::vector<Texcoords> texcoords;                // read if the document has images
 };
 
 struct Geometry {

@@ -3,6 +3,16 @@
 #include "scenes/collada_material.h"
 
 namespace lanewise::collada {
+namespace {
+
+// The <instance_material> that the <instance_geometry> has for the symbol; an empty one means the first.
+pugi::xml_node binding_of(pugi::xml_node instance, const std::string& symbol) {
+  const pugi::xml_node bindings = instance.child("bind_material").child("technique_common");
+  if (symbol.empty()) return bindings.child("instance_material");
+  return bindings.find_child_by_attribute("instance_material", "symbol", symbol.c_str());
+}
+
+}  // namespace
 
 const Geometry& Library::geometry(pugi::xml_node instance) {
   const pugi::xml_node element = document_.refer(instance, "url", "geometry");
@@ -15,10 +25,7 @@ const Geometry& Library::geometry(pugi::xml_node instance) {
 }
 
 uint32_t Library::material(pugi::xml_node instance, const std::string& symbol, pugi::xml_node user) {
-  const pugi::xml_node bindings = instance.child("bind_material").child("technique_common");
-  const pugi::xml_node binding = symbol.empty()
-                                     ? bindings.child("instance_material")
-                                     : bindings.find_child_by_attribute("instance_material", "symbol", symbol.c_str());
+  const pugi::xml_node binding = binding_of(instance, symbol);
   if (binding) return material(document_.refer(binding, "target", "material"));
   if (symbol.empty()) {
     notice("geometry " + quoted(instance.attribute("url").value()) + " has no material: rendered as diffuse grey 0.5");
@@ -36,11 +43,28 @@ uint32_t Library::material(pugi::xml_node element) {
   material.name = "default";
   material.reflectance = glm::dvec3(0.5);
   std::vector<std::string> notices;
-  if (element) material = read_material(document_, element, notices);
+  std::string texcoords;
+  if (element) material = read_material(document_, element, textures_, texcoords, notices);
   for (const std::string& text : notices) notice(text);
   place->second = static_cast<uint32_t>(scene_.materials.size());
+  texcoord_names_[place->second] = texcoords;
   scene_.materials.push_back(material);
   return place->second;
+}
+
+std::vector<std::array<glm::dvec2, 3>> Library::texcoords(pugi::xml_node instance, const Part& part,
+                                                          uint32_t material) const {
+  if (scene_.materials[material].texture == kNoTexture || part.texcoords.empty()) return {};
+  const pugi::xml_node input =
+      binding_of(instance, part.symbol)
+          .find_child_by_attribute("bind_vertex_input", "semantic", texcoord_names_.at(material).c_str());
+  if (input) {
+    const uint64_t set = document_.count(input, "input_set").value_or(0);
+    for (const Part::Texcoords& texcoords : part.texcoords) {
+      if (texcoords.set == set) return texcoords.corners;
+    }
+  }
+  return part.texcoords.front().corners;
 }
 
 void Library::notice(const std::string& text) {

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "scenes/collada_image.h"
+
 namespace lanewise::collada {
 namespace {
 
@@ -114,8 +116,17 @@ pugi::xml_node color_element(const Document& document, pugi::xml_node effect, pu
   document.fail(reference, "refers to " + quoted(name) + ", but no colour <newparam> has that sid");
 }
 
-void read_common(const Document& document, pugi::xml_node effect, Material& material,
-                 std::vector<std::string>& notices) {
+void read_texture(const Document& document, pugi::xml_node effect, pugi::xml_node element, Textures& textures,
+                  Material& material, std::vector<std::string>& notices) {
+  material.texture = textures.file(image_file(document, effect, element));
+  material.reflectance = glm::dvec3(material.texture == kNoTexture ? kGrey : 1);
+  if (material.texture == kNoTexture) {
+    notices.push_back("material " + quoted(material.name) + " is rendered as diffuse grey 0.5: its texture is missing");
+  }
+}
+
+void read_common(const Document& document, pugi::xml_node effect, Textures& textures, Material& material,
+                 std::string& texcoords, std::vector<std::string>& notices) {
   material.reflectance = glm::dvec3(kGrey);
   pugi::xml_node shader;
   for (const char* name : {"phong", "lambert", "blinn", "constant"}) {
@@ -136,8 +147,9 @@ void read_common(const Document& document, pugi::xml_node effect, Material& mate
   const pugi::xml_node diffuse = shader.child("diffuse");
   if (const pugi::xml_node color = color_element(document, effect, diffuse)) {
     material.reflectance = read_albedo(document, color);
-  } else if (diffuse.child("texture")) {
-    notices.push_back("material " + quoted(material.name) + " has a texture: not read, rendered as diffuse grey 0.5");
+  } else if (const pugi::xml_node texture = diffuse.child("texture")) {
+    read_texture(document, effect, texture, textures, material, notices);
+    texcoords = texture.attribute("texcoord").value();
   } else {
     material.reflectance = glm::dvec3(0.0);
   }
@@ -149,7 +161,8 @@ glm::dvec3 read_radiance(const Document& document, pugi::xml_node node) {
   return read_color(document, node, 0, kLargest);
 }
 
-Material read_material(const Document& document, pugi::xml_node element, std::vector<std::string>& notices) {
+Material read_material(const Document& document, pugi::xml_node element, Textures& textures, std::string& texcoords,
+                       std::vector<std::string>& notices) {
   Material material;
   material.name = name_of(element);
   const pugi::xml_node instance = element.child("instance_effect");
@@ -158,7 +171,7 @@ Material read_material(const Document& document, pugi::xml_node element, std::ve
   if (const pugi::xml_node cgl = cgl_material(effect)) {
     read_cgl(document, cgl, material, notices);
   } else {
-    read_common(document, effect, material, notices);
+    read_common(document, effect, textures, material, texcoords, notices);
   }
   return material;
 }

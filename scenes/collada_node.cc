@@ -55,7 +55,9 @@ class Instantiator {
       scene_.meshes.push_back(mesh_of(part));
       place_mesh(scene_.meshes.back(), to_world);
       scene_.meshes.back().name = name_of(node);
-      scene_.meshes.back().material = library_.material(instance, part.symbol, part.element);
+      const uint32_t material = library_.material(instance, part.symbol, part.element);
+      scene_.meshes.back().material = material;
+      scene_.meshes.back().texcoords = library_.texcoords(instance, part, material);
     }
   }
 

@@ -6,18 +6,21 @@
 namespace lanewise::collada {
 namespace {
 
-// Parameters without a name are padding; without any parameter a vector is its first three values.
-std::array<size_t, 3> components(const Document& document, pugi::xml_node accessor) {
+// Parameters without a name are padding; without any parameter a vector is its first values.
+std::array<size_t, 3> components(const Document& document, pugi::xml_node accessor, size_t wanted) {
   std::array<size_t, 3> component{0, 1, 2};
   size_t params = 0;
   size_t named = 0;
   for (const pugi::xml_node param : accessor.children("param")) {
-    if (param.attribute("name") && named < 3) component[named++] = params;
+    if (param.attribute("name") && named < wanted) component[named++] = params;
     ++params;
   }
-  if (params == 0) return component;
-  if (named == 0 && params >= 3) return {0, 1, 2};
-  if (named < 3) document.fail(accessor, "3 components expected, not " + std::to_string(named));
+  if (named == 0 && params >= wanted) {
+    component = {0, 1, 2};
+  } else if (params > 0 && named < wanted) {
+    document.fail(accessor, std::to_string(wanted) + " components expected, not " + std::to_string(named));
+  }
+  if (wanted == 2) component[2] = component[1];
   return component;
 }
 
@@ -35,12 +38,12 @@ const std::vector<double>& ArrayCache::array(pugi::xml_node float_array) {
   return values;
 }
 
-Source ArrayCache::read(pugi::xml_node source) {
+Source ArrayCache::read(pugi::xml_node source, size_t wanted) {
   const pugi::xml_node accessor = source.child("technique_common").child("accessor");
   if (!accessor) document_.fail(source, "has no <accessor>");
   const std::vector<double>& values = array(document_.refer(accessor, "source", "float_array"));
   Source view;
-  view.component = components(document_, accessor);
+  view.component = components(document_, accessor, wanted);
   const size_t last_component = *std::ranges::max_element(view.component);
   view.stride = document_.count(accessor, "stride").value_or(1);
   const auto count = document_.count(accessor, "count");
@@ -48,7 +51,8 @@ Source ArrayCache::read(pugi::xml_node source) {
   view.count = *count;
   const size_t offset = document_.count(accessor, "offset").value_or(0);
   if (view.count == 0) return view;
-  if (view.stride <= last_component) document_.fail(accessor, "stride is too short for 3 components");
+  if (view.stride <= last_component)
+    document_.fail(accessor, "stride is too short for " + std::to_string(wanted) + " components");
 
   // Divisions, so that no claimed number can overflow.
   const size_t size = values.size();

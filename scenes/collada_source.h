@@ -30,9 +30,9 @@ class ArrayCache {
  public:
   explicit ArrayCache(const Document& document) : document_(document) {}
 
-  // The source's vectors of three. Fails for missing elements, and for counts that disagree with the numbers in the
+  // The source's vectors of three, or of two, of which z is y again. Fails for missing elements, and for counts that disagree with the numbers in the
   // text.
-  Source read(pugi::xml_node source);
+  Source read(pugi::xml_node source, size_t components = 3);
 
  private:
   const std::vector<double>& array(pugi::xml_node float_array);

@@ -36,9 +36,15 @@ ExportedScene export_mitsuba(const Scene& scene, const Settings& settings, const
 // tints. It renders spectra: eta and k are given at our three wavelengths and are linear between them, constant beyond.
 ExportedScene export_pbrt(const Scene& scene, const Settings& settings, const std::string& folder);
 
-// The mesh as a binary little-endian PLY of floats: positions, normals too if it has some and `normals` is set,
-// triangles.
-std::string ply_file(const Mesh& mesh, bool normals);
+// The mesh as a binary little-endian PLY of floats: positions, normals too if it has some and `normals` is set, texture
+// coordinates u, v if it has some (v, or 1 - v if `v_down`: some have a texture's first row at v = 0), triangles.
+std::string ply_file(const Mesh& mesh, bool normals, bool v_down = false);
+
+// What a textured material reflects, linear, row 0 at the top.
+Image albedo_map(const Scene& scene, const Material& material);
+
+// As mesh_path, for a material's texture: "scene_meshes/albedo2.pfm".
+std::string albedo_path(const std::string& folder, size_t material);
 
 // "scene.xml" of folder "scene_meshes": "scene_meshes/3.ply".
 std::string mesh_path(const std::string& folder, size_t mesh);

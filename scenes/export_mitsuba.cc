@@ -111,7 +111,11 @@ class Writer {
     const pugi::xml_node node = m.kind == Kind::kGlass ? outer : plugin(outer, "bsdf", type);
     switch (m.kind) {
       case Kind::kDiffuse:
-        rgb(node, "reflectance", m.reflectance);
+        if (m.texture == kNoTexture) {
+          rgb(node, "reflectance", m.reflectance);
+        } else {
+          add_albedo_map(node, index);
+        }
         break;
       case Kind::kEmission:
         rgb(node, "reflectance", glm::dvec3(0.0));
@@ -135,12 +139,20 @@ class Writer {
     }
   }
 
+  void add_albedo_map(pugi::xml_node bsdf, size_t index) {
+    const std::string path = albedo_path(folder_, index);
+    result_.files.push_back({path, encode_image(path, albedo_map(scene_, scene_.materials[index]))});
+    pugi::xml_node node = plugin(bsdf, "texture", "bitmap");
+    node.append_attribute("name") = "reflectance";
+    set(node, "string", "filename", path);
+  }
+
   // Emitters without normals: which side emits is the winding's to say.
   void add_mesh(size_t index) {
     const Mesh& mesh = scene_.meshes[index];
     const bool smooth = !mesh.normals.empty() && scene_.materials[mesh.material].kind != Kind::kEmission;
     const std::string path = mesh_path(folder_, index);
-    result_.files.push_back({path, ply_file(mesh, smooth)});
+    result_.files.push_back({path, ply_file(mesh, smooth, true)});
     const pugi::xml_node node = plugin(root_, "shape", "ply");
     set(node, "string", "filename", path);
     set(node, "boolean", "face_normals", smooth ? "false" : "true");

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/image_io.h"
 #include "scenes/export.h"
 #include "scenes/quoted.h"
 
@@ -56,11 +57,14 @@ class Writer {
 
   void add_material(size_t index) {
     const Material& m = scene_.materials[index];
+    if (m.texture != kNoTexture) add_albedo_map(index);
     text_ += "\n# " + printable(m.name) + "\nMakeNamedMaterial \"material" + std::to_string(index) + "\" ";
     const auto lost = [&](const char* what) { result_.losses.push_back("material " + quoted(m.name) + ' ' + what); };
     switch (m.kind) {
       case Kind::kDiffuse:
-        text_ += "\"string type\" \"diffuse\" " + rgb("reflectance", m.reflectance);
+        text_ += "\"string type\" \"diffuse\" " +
+                 (m.texture == kNoTexture ? rgb("reflectance", m.reflectance)
+                                          : "\"texture reflectance\" \"albedo" + std::to_string(index) + "\"");
         break;
       case Kind::kEmission:
         text_ += "\"string type\" \"diffuse\" " + rgb("reflectance", glm::dvec3(0.0));
@@ -81,6 +85,13 @@ class Writer {
         break;
     }
     text_ += "\n";
+  }
+
+  void add_albedo_map(size_t index) {
+    const std::string path = albedo_path(folder_, index);
+    result_.files.push_back({path, encode_image(path, albedo_map(scene_, scene_.materials[index]))});
+    text_ += "\nTexture \"albedo" + std::to_string(index) + "\" \"spectrum\" \"imagetexture\" \"string filename\" \"" +
+             path + "\"\n";
   }
 
   // Emitters without normals: which side emits is the winding's to say.

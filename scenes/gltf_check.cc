@@ -118,6 +118,16 @@ class Checker {
     return found;
   }
 
+  void check_texcoords(const JsonValue& attributes, uint64_t count) const {
+    for (const auto& [name, value] : attributes.json().items()) {
+      if (!name.starts_with("TEXCOORD_")) continue;
+      const JsonValue reference = attributes[name.c_str()];
+      if (accessor(reference, "VEC2", {kByte, kShort, kFloat})["count"].count(0) != count) {
+        reference.fail("has another length than POSITION");
+      }
+    }
+  }
+
   void check_mesh(const JsonValue& mesh) {
     const std::vector<JsonValue> primitives = mesh["primitives"].elements();
     if (primitives.empty()) mesh.fail("has no primitives");
@@ -130,6 +140,7 @@ class Checker {
           accessor(attributes["NORMAL"], "VEC3", {kFloat})["count"].count(0) != positions["count"].count(0)) {
         attributes["NORMAL"].fail("has another length than POSITION");
       }
+      check_texcoords(attributes, positions["count"].count(0));
       if (primitive["indices"].present()) {
         corners_ += accessor(primitive["indices"], "SCALAR", {kByte, kShort, kInt})["count"].count(0);
       }

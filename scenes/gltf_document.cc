@@ -14,6 +14,7 @@ using nlohmann::json;
 constexpr std::string_view kMagic = "glTF";
 constexpr uint32_t kVersion = 2;
 constexpr uint32_t kJsonChunk = 0x4E4F534A;
+constexpr uint32_t kBinaryChunk = 0x004E4942;
 constexpr size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
 constexpr int kMaxNesting = 1000;  // of JSON: the next reader of it is recursive
 
@@ -44,9 +45,24 @@ void copy_list(const json& from, json& to, const char* list, F copy) {
   for (size_t i = 0; i < from[list].size(); ++i) to[list].push_back(copy(from[list][i], std::to_string(i)));
 }
 
-json kept_primitive(const json& primitive) {
+// The set of texture coordinates that the primitive's material wants for its base colour; null: none.
+json texcoords_of(const JsonValue& root, const JsonValue& primitive) {
+  constexpr uint64_t kFloat = 5126;  // what Assimp takes any other for
+  const JsonValue materials = root["materials"], attributes = primitive["attributes"];
+  if (!primitive["material"].present()) return {};
+  const JsonValue material = materials.at(primitive["material"].index(materials));
+  const JsonValue base = material["pbrMetallicRoughness"]["baseColorTexture"];
+  const std::string set = "TEXCOORD_" + std::to_string(base["texCoord"].count(0));
+  if (!base.present() || !attributes[set.c_str()].present()) return {};
+  const JsonValue accessor = root["accessors"].at(attributes[set.c_str()].index(root["accessors"]));
+  return accessor["componentType"].count(0) == kFloat ? attributes[set.c_str()].json() : json();
+}
+
+json kept_primitive(const JsonValue& root, const JsonValue& from) {
+  const json& primitive = from.json();
   json to = kept(primitive, {"indices", "material", "mode"});
   to["attributes"] = kept(primitive["attributes"], {"POSITION", "NORMAL"});
+  if (const json texcoords = texcoords_of(root, from); !texcoords.is_null()) to["attributes"]["TEXCOORD_0"] = texcoords;
   if (primitive.contains("extensions"))
     to["extensions"] = kept(primitive["extensions"], {"KHR_draco_mesh_compression"});
   return to;
@@ -102,11 +118,13 @@ std::string GltfDocument::geometry() const {
     copy["name"] = "node " + index;
     return copy;
   });
-  copy_list(json_, to, "meshes", [](const json& mesh, const std::string&) {
+  for (const JsonValue& mesh : root()["meshes"].elements()) {
     json copy;
-    for (const json& primitive : mesh["primitives"]) copy["primitives"].push_back(kept_primitive(primitive));
-    return copy;
-  });
+    for (const JsonValue& primitive : mesh["primitives"].elements()) {
+      copy["primitives"].push_back(kept_primitive(root(), primitive));
+    }
+    to["meshes"].push_back(copy);
+  }
   copy_list(json_, to, "materials", [](const json&, const std::string& index) {
     return json{{"name", "material " + index}};
   });
@@ -119,6 +137,11 @@ std::string GltfDocument::geometry() const {
   append_word(file, text.size());
   append_word(file, kJsonChunk);
   return file.append(text).append(chunks_);
+}
+
+std::string_view GltfDocument::binary_chunk() const {
+  if (chunks_.size() < kChunkHeaderBytes || word_at(chunks_, 4) != kBinaryChunk) return {};
+  return chunks_.substr(kChunkHeaderBytes, word_at(chunks_, 0));
 }
 
 std::vector<std::string> GltfDocument::notices() const {

@@ -21,10 +21,13 @@ class GltfDocument {
   // 1000 deep, and accessors that reach beyond their buffers.
   GltfDocument(const std::string& path, const std::string& text);
 
-  // The file with which geometry is left, in the form that the original has.
+  // The file with which geometry is left, in the form that the original has. Of texture coordinates there is one set: that
+  // which the material's base colour asks for.
   std::string geometry() const;
 
+  const std::string& path() const { return path_; }
   JsonValue root() const { return {path_, json_}; }
+  std::string_view binary_chunk() const;     // the bytes after the JSON of a .glb, or none
   std::vector<std::string> notices() const;  // what of the file is not rendered
 
   // Of a name that geometry() gave; nothing for other names.

@@ -57,11 +57,9 @@ void make_glass(const JsonValue& m, const glm::dvec3& tint, Material& material) 
   if (!(material.ior >= 1 && material.ior <= 100)) ior.fail("must be from 1 to 100");
 }
 
-bool has_texture(const JsonValue& m) {
-  const JsonValue pbr = m["pbrMetallicRoughness"];
-  return pbr["baseColorTexture"].present() || pbr["metallicRoughnessTexture"].present() ||
-         m["emissiveTexture"].present() || m["normalTexture"].present() ||
-         m["extensions"]["KHR_materials_transmission"]["transmissionTexture"].present();
+bool has_other_textures(const JsonValue& m) {
+  return m["pbrMetallicRoughness"]["metallicRoughnessTexture"].present() || m["emissiveTexture"].present() ||
+         m["normalTexture"].present() || m["extensions"]["KHR_materials_transmission"]["transmissionTexture"].present();
 }
 
 }  // namespace
@@ -73,28 +71,32 @@ void metal_of_reflectance(double reflectance, double& eta, double& k) {
   k = std::sqrt(std::max(0.0, ((eta + 1) * (eta + 1) * r - (eta - 1) * (eta - 1)) / (1 - r)));
 }
 
-Material read_gltf_material(const JsonValue& m, std::vector<std::string>& notices) {
+Material read_gltf_material(const JsonValue& m, const std::function<uint32_t(const JsonValue&)>& texture_of,
+                            std::vector<std::string>& notices) {
   Material material;
   material.name = m["name"].text("");
   const auto notice = [&](const char* what) {
     notices.push_back("material " + lanewise::quoted(material.name) + ' ' + what);
   };
-  if (has_texture(m)) notice("has textures: not read, grey 0.5 in place of a colour's");
-  const JsonValue pbr = m["pbrMetallicRoughness"];
-  const double textured = pbr["baseColorTexture"].present() ? kTexture : 1;
-  const glm::dvec3 base = textured * color(pbr["baseColorFactor"], 1, 1);
+  if (has_other_textures(m)) notice("has textures of other things than its colour: not read");
+  const JsonValue pbr = m["pbrMetallicRoughness"], texture = pbr["baseColorTexture"];
+  const glm::dvec3 color_factor = color(pbr["baseColorFactor"], 1, 1);
+  const glm::dvec3 base = (texture.present() ? kTexture : 1) * color_factor;
   const double metallic = share(pbr["metallicFactor"], 1), roughness = share(pbr["roughnessFactor"], 1);
   const double transmission = share(m["extensions"]["KHR_materials_transmission"]["transmissionFactor"], 0);
 
   read_emission(m, material);
   if (material.kind == Material::Kind::kEmission) return material;
+  const bool is_diffuse = transmission < 0.5 && metallic < 0.5;
+  if (texture.present() && !is_diffuse) notice("has a texture and is not diffuse: half of its colour stands for it");
   if (transmission >= 0.5) {
     if (roughness > 0 && pbr["roughnessFactor"].present()) notice("is rough glass: rendered smooth");
     make_glass(m, base, material);
   } else if (metallic >= 0.5) {
     make_metal(base, roughness * roughness, material);
   } else {
-    material.reflectance = base;
+    if (texture.present()) material.texture = texture_of(texture);
+    material.reflectance = material.texture == kNoTexture ? base : color_factor;
     const std::string alpha_mode = m["alphaMode"].text("OPAQUE");
     if (alpha_mode != "OPAQUE") notice("is partly transparent: rendered opaque");
   }

@@ -1,6 +1,7 @@
 // Materials of glTF 2.0.
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -17,9 +18,11 @@ namespace lanewise {
 //   metallicFactor >= 0.5: with roughness below 0.01 a mirror of the base colour, otherwise a metal of Beckmann
 //     roughness alpha = roughness^2 (glTF's own distribution is GGX) whose reflectance head on is the base colour
 //   else: diffuse, of the base colour; the coat that glTF gives such surfaces is left out
-// Textures are not read: half of the base colour stands for one of that, and the other factors are as they are. What
-// was left out goes to the notices. Throws Error for values out of range.
-Material read_gltf_material(const JsonValue& material, std::vector<std::string>& notices);
+// The base colour of a diffuse surface may be textured. Other textures are not read: half of the base colour stands for one of
+// that, and the other factors are as they are. What was left out goes to the notices. Throws Error for values out of range.
+// texture_of: the texture of the scene that a textureInfo means, or kNoTexture.
+Material read_gltf_material(const JsonValue& material, const std::function<uint32_t(const JsonValue&)>& texture_of,
+                            std::vector<std::string>& notices);
 
 // Index and extinction of a metal with this reflectance head on, each value in [0, 1), by Gulbrandsen, Artist Friendly
 // Metallic Fresnel (JCGT 3(4), 2014), with the edge tint 1 - (1 - r)^2.7, which is fitted here to Schlick's formula:

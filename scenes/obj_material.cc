@@ -15,8 +15,8 @@ constexpr double kLargest = 1e15;  // squares and products up to this stay finit
 
 class Reader {
  public:
-  Reader(const std::string& path, const aiMaterial& from, std::vector<std::string>& notices)
-      : path_(path), from_(from), notices_(notices) {
+  Reader(const std::string& path, const aiMaterial& from, Textures& textures, std::vector<std::string>& notices)
+      : path_(path), from_(from), textures_(textures), notices_(notices) {
     material_.name = from.GetName().C_Str();
   }
 
@@ -61,12 +61,24 @@ class Reader {
 
   void make_diffuse(double opacity) {
     if (from_.GetTextureCount(aiTextureType_DIFFUSE) > 0) {
-      material_.reflectance = glm::dvec3(kGrey);
-      notice("has a texture: not read, rendered as diffuse grey 0.5");
+      read_texture();
     } else {
       material_.reflectance = color("Kd", "$clr.diffuse", kGrey, 1);
     }
     if (opacity < 1) notice("is partly transparent: rendered opaque");
+  }
+
+  void read_texture() {
+    aiString file;
+    from_.GetTexture(aiTextureType_DIFFUSE, 0, &file);
+    material_.texture = textures_.file(file.C_Str());
+    if (material_.texture == kNoTexture) {
+      material_.reflectance = glm::dvec3(kGrey);
+      notice("is rendered as diffuse grey 0.5: its texture is missing");
+      return;
+    }
+    const glm::dvec3 factor = color("Kd", "$clr.diffuse", 1, 1);
+    material_.reflectance = factor == glm::dvec3(kNoKd) ? glm::dvec3(1) : factor;
   }
 
   double number(const char* name, const char* key, double otherwise, double most) const {
@@ -96,14 +108,16 @@ class Reader {
 
   const std::string& path_;
   const aiMaterial& from_;
+  Textures& textures_;
   std::vector<std::string>& notices_;
   Material material_;
 };
 
 }  // namespace
 
-Material read_obj_material(const std::string& path, const aiMaterial& from, std::vector<std::string>& notices) {
-  return Reader(path, from, notices).read();
+Material read_obj_material(const std::string& path, const aiMaterial& from, Textures& textures,
+                           std::vector<std::string>& notices) {
+  return Reader(path, from, textures, notices).read();
 }
 
 }  // namespace lanewise

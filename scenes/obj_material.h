@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/scene.h"
+#include "scenes/textures.h"
 
 struct aiMaterial;
 
@@ -16,8 +17,10 @@ namespace lanewise {
 //     transmittance
 //   illum 3 or 5, and Ks is not black: a mirror of reflectance Ks
 //   else: diffuse, of reflectance Kd (0.6 where it is not given)
-// Textures are not read: grey 0.5 stands for one of Kd. What was left out goes to the notices. Throws Error, naming the
+// A texture, map_Kd, is multiplied by Kd (1 where it is not given); grey 0.5 stands for one that is missing. What was left out
+// goes to the notices. Throws Error, naming the
 // path, for values out of range.
-Material read_obj_material(const std::string& path, const aiMaterial& from, std::vector<std::string>& notices);
+Material read_obj_material(const std::string& path, const aiMaterial& from, Textures& textures,
+                           std::vector<std::string>& notices);
 
 }  // namespace lanewise

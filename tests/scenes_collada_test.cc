@@ -310,7 +310,6 @@ TEST_CASE("collada: common materials") {
               .reflectance == dvec3(.1, .2, .3));
   }
   CHECK(common("<phong><emission><color>4 5 6 1</color></emission></phong>").radiance == dvec3(4, 5, 6));
-  CHECK(common("<phong><diffuse><texture texture=\"t\"/></diffuse></phong>", "texture").reflectance == dvec3(0.5));
   CHECK(common("<phong/>").reflectance == dvec3(0.0));
   CHECK(common("", "no common profile").reflectance == dvec3(0.5));
   const std::string param = "<lambert><diffuse><param ref=\"tone\"/></diffuse></lambert>";

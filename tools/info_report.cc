@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/inspect.h"
+#include "scenes/quoted.h"
 #include "tools/text.h"
 #include "tools/version.h"
 
@@ -64,11 +65,16 @@ std::string numbers(const glm::dvec3& v) {
 
 std::string triple(const glm::dvec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
 
-std::string values_text(const Material& m) {
+std::string values_text(const Scene& scene, const Material& m) {
   std::string text;
   for (const auto& [name, values] : values_of(m)) {
     const glm::dvec3 v = values.size() == 3 ? glm::dvec3(values[0], values[1], values[2]) : glm::dvec3(values[0]);
     text += (text.empty() ? "" : ", ") + std::string(name) + " " + numbers(v);
+  }
+  if (m.texture != kNoTexture) {
+    const Texture& texture = scene.textures[m.texture];
+    text += " times " + lanewise::quoted(texture.name) + ", " + std::to_string(texture.width) + " x " +
+            std::to_string(texture.height);
   }
   return text;
 }
@@ -126,7 +132,7 @@ std::string info_text(const Scene& scene) {
   for (size_t i = 0; i < uses.size(); ++i) {
     const Material& m = scene.materials[i];
     rows.push_back({name_text(m.name), kind_name(m.kind), std::to_string(uses[i].triangles),
-                    std::to_string(uses[i].spheres), values_text(m)});
+                    std::to_string(uses[i].spheres), values_text(scene, m)});
   }
   text += table(rows, 2, 3);
   if (!lights.empty()) {
@@ -170,6 +176,10 @@ std::string info_json(const Scene& scene) {
     for (const auto& [name, values] : values_of(m)) {
       if (values.size() == 1) material[name] = values[0];
       if (values.size() == 3) material[name] = values;
+    }
+    if (m.texture != kNoTexture) {
+      const Texture& texture = scene.textures[m.texture];
+      material["texture"] = {{"name", texture.name}, {"width", texture.width}, {"height", texture.height}};
     }
     json["materials"].push_back(material);
   }

@@ -21,6 +21,7 @@
 #include "kernels/reference/shade_microfacet.h"
 #include "kernels/reference/shade_mirror.h"
 #include "kernels/reference/surface.h"
+#include "kernels/reference/texture.h"
 
 namespace lanewise::verify {
 namespace {
@@ -37,6 +38,7 @@ void generate_batch(const Plan& plan, const PathState& s, Range range) {
 bool is_light(const Plan& plan, const Step& step) { return !is_environment(plan, step.light); }
 bool connected(const Plan& plan, const Step& step) { return connects(plan) && is_light(plan, step); }
 bool has_sky(const Plan& plan, const Step&) { return !plan.environment.empty(); }
+bool has_textures(const Plan& plan, const Step&) { return !plan.textures.empty(); }
 
 // Does nothing where it is missing.
 template <auto kCondition, Kernel* kKernel>
@@ -65,6 +67,8 @@ const KernelCase kCases[] = {
     {"environment", run_if<has_sky, environment>, twin_if<has_sky, twin::environment<double>>, kEnvironmentBounds,
      "d pdf", fill_sky_ray},
     {"surface", surface, twin::surface<double>, kSurfaceBounds, "t u v o d", fill_hit},
+    {"texture", run_if<has_textures, texture>, twin_if<has_textures, twin::texture<double>>, kTextureBounds, "o",
+     fill_of_bin<kDiffuse, kShade>},
     {"sample_light", run_if<is_light, sample_light>, twin_if<is_light, twin::sample_light<double>>, kSampleLightBounds,
      "o n", fill_shading_point},
     {"sample_environment", run_if<has_sky, sample_environment>, twin_if<has_sky, twin::sample_environment<double>>,
@@ -76,6 +80,10 @@ const KernelCase kCases[] = {
     {"light_diffuse", light_diffuse, twin::light_diffuse<double>, kLightDiffuseBounds, "d s l l_pdf",
      fill_of_bin<kDiffuse, kLight>},
     {"shade_diffuse", shade_diffuse, twin::shade_diffuse<double>, kShadeDiffuseBounds, "o d n s",
+     fill_of_bin<kDiffuse, kShade>},
+    {"light_textured", light_textured, twin::light_textured<double>, kLightTexturedBounds, "d s l l_pdf",
+     fill_of_bin<kDiffuse, kLight>},
+    {"shade_textured", shade_textured, twin::shade_textured<double>, kShadeTexturedBounds, "o d n s",
      fill_of_bin<kDiffuse, kShade>},
     {"light_microfacet", light_microfacet, twin::light_microfacet<double>, kLightMicrofacetBounds, "d s l l_pdf",
      fill_of_bin<kMicrofacet, kLight>},

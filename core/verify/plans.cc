@@ -1,6 +1,7 @@
 #include "core/verify/plans.h"
 
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "core/scene.h"
@@ -46,8 +47,23 @@ Scene rich_scene() {
   return scene;
 }
 
+// Spheres and red walls stay without.
+void hang_texture(Scene& scene) {
+  std::mt19937 rng(5);
+  Texture texture{"test", 7, 5, {}};
+  for (uint32_t i = 0; i < 35; ++i) texture.texels.push_back(static_cast<uint32_t>(rng()) & 0xffffff);
+  scene.textures.push_back(texture);
+  for (Mesh& mesh : scene.meshes) {
+    if (mesh.material != test::kWhite && mesh.material != test::kBlue) continue;
+    scene.materials[mesh.material].texture = 0;
+    mesh.texcoords = {{{{0, 0}, {1, 0}, {1, 1}}}, {{{0, 0}, {1, 1}, {0, 1}}}};
+    if (mesh.name == "floor") mesh.texcoords = {{{{-3, 1}, {2, 4}, {-1, 9}}}, {{{-3, 1}, {-1, 9}, {-6, 6}}}};
+  }
+}
+
 Scene flat_scene() {
   Scene scene = test::test_box();
+  hang_texture(scene);
   scene.spheres.push_back({"lamp", {0.6, 0.4, 1.1}, 0.1, test::kSmallLight});
   return scene;
 }

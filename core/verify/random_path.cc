@@ -40,6 +40,7 @@ void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t i
   p.l_pdf = rng() % 8 == 0 ? 0.0f : 0.01f + 2 * unit(rng);
   LANEWISE_SET_VEC3(p, m, (0.1f + unit(rng)) * random_direction(rng));
   LANEWISE_SET_RGB(p, c, glm::vec3(unit(rng), unit(rng), unit(rng)));
+  LANEWISE_SET_RGB(p, a, glm::vec3(unit(rng), unit(rng), unit(rng)));
 }
 
 void arrive(std::mt19937& rng, Path<float>& p, float cosine) {
