@@ -16,6 +16,8 @@ const char* material_name(Bin bin) {
       return "diffuse surface";
     case kMicrofacet:
       return "microfacet metal";
+    case kRoughGlass:
+      return "rough glass";
     case kMirror:
       return "mirror";
     case kGlass:
@@ -33,7 +35,9 @@ bool has_bin(const Plan& plan, Bin bin) {
   return std::ranges::any_of(plan.shade_stages, [bin](const ShadeStages& s) { return s.bin == bin; });
 }
 
-bool has_rough(const Plan& plan) { return has_bin(plan, kDiffuse) || has_bin(plan, kMicrofacet); }
+bool has_rough(const Plan& plan) {
+  return has_bin(plan, kDiffuse) || has_bin(plan, kMicrofacet) || has_bin(plan, kRoughGlass);
+}
 
 std::string why_nothing_scatters(const Plan& plan) {
   if (plan.settings.max_depth == 0) return "-m 0: no path scatters";
@@ -192,6 +196,10 @@ std::string why_left_out(const Plan& plan, Stage stage) {
       return plan.textures.empty() ? why_no_material(plan, kDiffuse) : "the scene has textures: shade_textured";
     case Stage::kShadeMicrofacet:
       return why_no_material(plan, kMicrofacet);
+    case Stage::kLightRoughGlass:
+      return why_no_light_stage(plan, kRoughGlass);
+    case Stage::kShadeRoughGlass:
+      return why_no_material(plan, kRoughGlass);
     case Stage::kShadeMirror:
       return why_no_material(plan, kMirror);
     case Stage::kShadeGlass:

@@ -29,8 +29,8 @@ void copy(const dvec3& from, float* to) {
   for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
 }
 
-Bin bin_of(Material::Kind kind) {
-  switch (kind) {
+Bin bin_of(const Material& m) {
+  switch (m.kind) {
     case Material::Kind::kDiffuse:
       return kDiffuse;
     case Material::Kind::kMicrofacet:
@@ -38,7 +38,7 @@ Bin bin_of(Material::Kind kind) {
     case Material::Kind::kMirror:
       return kMirror;
     case Material::Kind::kGlass:
-      return kGlass;
+      return is_rough_glass(m) ? kRoughGlass : kGlass;
     case Material::Kind::kEmission:
       return kEmitter;
   }
@@ -50,7 +50,7 @@ PlanMaterial compile(const Material& m) {
   copy(m.reflectance, out.reflectance);
   copy(m.transmittance, out.transmittance);
   out.ior = static_cast<float>(m.ior);
-  out.alpha = static_cast<float>(m.alpha);
+  out.alpha = static_cast<float>(m.kind == Material::Kind::kGlass ? m.roughness : m.alpha);
   copy(m.eta, out.eta);
   copy(m.k, out.k);
   return out;
@@ -207,7 +207,7 @@ class Planner {
     plan_.prim_shape.push_back(static_cast<float>(w));
     plan_.prim_err.push_back(err);
     plan_.prim_material.push_back(material);
-    const Bin bin = bin_of(scene_.materials[material].kind);
+    const Bin bin = bin_of(scene_.materials[material]);
     plan_.prim_bin.push_back(bin);
     plan_.prim_light.push_back(0);
     has_bin_[bin] = true;
@@ -231,6 +231,7 @@ class Planner {
         {kDiffuse, textured ? Stage::kLightTextured : Stage::kLightDiffuse,
          textured ? Stage::kShadeTextured : Stage::kShadeDiffuse},
         {kMicrofacet, Stage::kLightMicrofacet, Stage::kShadeMicrofacet},
+        {kRoughGlass, Stage::kLightRoughGlass, Stage::kShadeRoughGlass},
         {kMirror, Stage::kCount, Stage::kShadeMirror},
         {kGlass, Stage::kCount, Stage::kShadeGlass},
     };

@@ -20,7 +20,7 @@ struct Scene;
 
 // What a ray met, as the sort needs it: one bin per shading stage, the materials that take light samples first. kSky:
 // missed, where the plan has an environment; kFinished: missed where it has none, absorbed or roulette's.
-enum Bin : uint32_t { kDiffuse, kMicrofacet, kMirror, kGlass, kEmitter, kSky, kFinished, kBinCount };
+enum Bin : uint32_t { kDiffuse, kMicrofacet, kRoughGlass, kMirror, kGlass, kEmitter, kSky, kFinished, kBinCount };
 constexpr uint32_t kRoughBins = kMirror;     // bins below this one take light samples
 constexpr uint32_t kSurfaceBins = kEmitter;  // bins below this one scatter
 

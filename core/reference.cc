@@ -22,6 +22,7 @@
 #include "kernels/reference/shade_glass.h"
 #include "kernels/reference/shade_microfacet.h"
 #include "kernels/reference/shade_mirror.h"
+#include "kernels/reference/shade_rough_glass.h"
 #include "kernels/reference/surface.h"
 #include "kernels/reference/texture.h"
 
@@ -32,6 +33,7 @@ template <class T>
 void weigh_light(const Plan& plan, Path<T>& p) {
   if (p.bin == kDiffuse) plan.textures.empty() ? reference::light_diffuse(plan, p) : reference::light_textured(plan, p);
   if (p.bin == kMicrofacet) reference::light_microfacet(plan, p);
+  if (p.bin == kRoughGlass) reference::light_rough_glass(plan, p);
 }
 
 template <class T>
@@ -41,6 +43,8 @@ void shade(const Plan& plan, Path<T>& p) {
       return plan.textures.empty() ? reference::shade_diffuse(plan, p) : reference::shade_textured(plan, p);
     case kMicrofacet:
       return reference::shade_microfacet(plan, p);
+    case kRoughGlass:
+      return reference::shade_rough_glass(plan, p);
     case kMirror:
       return reference::shade_mirror(plan, p);
     case kGlass:

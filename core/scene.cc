@@ -157,6 +157,12 @@ void smooth_normals(Mesh& mesh) {
 
 }  // namespace
 
+bool is_rough_glass(const Material& material) {
+  constexpr double kLeastAlpha = 1e-4, kLeastContrast = 1e-3;
+  return material.kind == Material::Kind::kGlass && material.roughness >= kLeastAlpha &&
+         std::abs(material.ior - 1) >= kLeastContrast;
+}
+
 size_t Scene::triangle_count() const {
   size_t count = 0;
   for (const Mesh& mesh : meshes) count += mesh.triangles.size();

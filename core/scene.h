@@ -24,11 +24,15 @@ struct Material {
   uint32_t texture = kNoTexture;  // diffuse: index into Scene::textures, whose colour reflectance multiplies
   glm::dvec3 transmittance{1.0};  // glass: tint of refraction, in [0, 1]
   double ior = 1.5;               // glass: index inside over index outside, > 0
+  double roughness = 0;           // glass: Beckmann's alpha, from 0 on; see is_rough_glass
   double alpha = 0.1;             // microfacet: Beckmann roughness, RMS slope times sqrt(2), in (0, 1] or above
   glm::dvec3 eta{1.0};            // microfacet: real index at 614, 549, 466 nm
   glm::dvec3 k{0.0};              // microfacet: extinction coefficient
   glm::dvec3 radiance{0.0};       // emission: W / (m^2 sr), from the front (the side that sees the winding turn left)
 };
+
+// Whether glass is rougher than a float's direction, and refracts: with an index of 1 its roughness does nothing.
+bool is_rough_glass(const Material& material);
 
 struct Mesh {
   std::string name;

@@ -23,12 +23,14 @@ namespace lanewise {
   X(kLightDiffuse, light_diffuse)           \
   X(kLightTextured, light_textured)         \
   X(kLightMicrofacet, light_microfacet)     \
+  X(kLightRoughGlass, light_rough_glass)    \
   X(kOcclude, occlude)                      \
   X(kOccludeConnection, occlude_connection) \
   X(kGatherEmission, gather_emission)       \
   X(kShadeDiffuse, shade_diffuse)           \
   X(kShadeTextured, shade_textured)         \
   X(kShadeMicrofacet, shade_microfacet)     \
+  X(kShadeRoughGlass, shade_rough_glass)    \
   X(kShadeMirror, shade_mirror)             \
   X(kShadeGlass, shade_glass)               \
   X(kRoulette, roulette)                    \

@@ -35,6 +35,8 @@ Kernel* kernel_of(Stage stage) {
       return light_textured;
     case Stage::kLightMicrofacet:
       return light_microfacet;
+    case Stage::kLightRoughGlass:
+      return light_rough_glass;
     case Stage::kOcclude:
       return occlude;
     case Stage::kGatherEmission:
@@ -49,6 +51,8 @@ Kernel* kernel_of(Stage stage) {
       return shade_textured;
     case Stage::kShadeMicrofacet:
       return shade_microfacet;
+    case Stage::kShadeRoughGlass:
+      return shade_rough_glass;
     case Stage::kShadeMirror:
       return shade_mirror;
     case Stage::kShadeGlass:

@@ -26,8 +26,9 @@ HWY_INLINE VF SchlickFresnel(VF f0, VF c) {
 
 // What light does at a smooth boundary between indices n_i (its own side) and n_t.
 struct Dielectric {
-  VF reflectance;  // in [0, 1]; exactly 1 under total internal reflection
-  VF cos_t;        // of the refracted direction against the normal; 0 under total internal reflection
+  VF reflectance;    // in [0, 1]; exactly 1 under total internal reflection
+  VF transmittance;  // 1 - reflectance, of the exact formulas without cancellation
+  VF cos_t;          // of the refracted direction against the normal; 0 under total internal reflection
 };
 
 // c: cosine of incidence in [0, 1]. kSchlick takes the transmitted cosine from the dense side; kCourse, like the course
@@ -43,20 +44,24 @@ HWY_INLINE Dielectric FresnelDielectric(Fresnel model, VF c, VF n_i, VF n_t) {
   const MF refracts = hn::Gt(g2, zero);
   const VF g = hn::Sqrt(hn::Max(g2, zero));
   const VF cos_t = hn::Min(hn::Div(g, n_t), one);
-  VF reflectance;
+  VF reflectance, transmittance;
   if (model == Fresnel::kExact) {
     const VF c2 = Square(c);
-    const VF rs = hn::Div(e, Square(hn::Add(n_c, g)));
-    const VF rp =
-        hn::Div(hn::Mul(e, hn::MulSub(hn::Add(n_t2, n_i2), c2, n_i2)), Square(hn::MulAdd(n_t2, c, hn::Mul(n_i, g))));
+    const VF s2 = Square(hn::Add(n_c, g)), p2 = Square(hn::MulAdd(n_t2, c, hn::Mul(n_i, g)));
+    const VF rs = hn::Div(e, s2);
+    const VF rp = hn::Div(hn::Mul(e, hn::MulSub(hn::Add(n_t2, n_i2), c2, n_i2)), p2);
+    transmittance =
+        hn::Mul(hn::Mul(Splat(2.0f), hn::Mul(n_c, g)), hn::Add(hn::Div(Splat(1.0f), s2), hn::Div(n_t2, p2)));
     reflectance = hn::Min(hn::Mul(Splat(0.5f), hn::MulAdd(rs, rs, Square(rp))), one);
   } else {
     const VF f0 = Square(hn::Div(hn::Sub(n_i, n_t), hn::Add(n_i, n_t)));
     const MF dense = hn::Gt(n_i, n_t);
     const VF cosine = model == Fresnel::kSchlick ? hn::IfThenElse(dense, cos_t, c) : c;
     reflectance = SchlickFresnel(f0, cosine);
+    transmittance = hn::Sub(one, reflectance);
   }
-  return {hn::IfThenElse(refracts, reflectance, one), hn::IfThenElseZero(refracts, cos_t)};
+  return {hn::IfThenElse(refracts, reflectance, one), hn::IfThenElseZero(refracts, transmittance),
+          hn::IfThenElseZero(refracts, cos_t)};
 }
 
 // One channel of a conductor with complex index eta + i k against vacuum, c in [0, 1] the cosine of incidence.

@@ -34,9 +34,9 @@ constexpr KernelBounds kGenerateBounds = {.fields = {exact("pixel"), exact("samp
 void intersect(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kIntersectFields = {.reads = "o d beta step", .writes = "prim t u v bin"};
 // The choice is that of the primitive. Of those that share the edge or vertex that is hit, rounding decides which it is; the
-// distance is the same. A few rays in a hundred are aimed at edges.
+// distance is the same. A few rays in a hundred are aimed at edges. The largest errors are those of faces that a ray grazes.
 constexpr KernelBounds kIntersectBounds = {
-    .fields = {exact("prim"), exact("bin"), input_ulps("t", 1.5), input_ulps("u", 0.5), input_ulps("v", 0.5)},
+    .fields = {exact("prim"), exact("bin"), input_ulps("t", 3), input_ulps("u", 0.75), input_ulps("v", 0.75)},
     .choice = {.margin = 4, .max_share = 0.008, .decisive = "t"}};
 
 // Where each bin lies after the sort; bins begin at multiples of kLanes.
@@ -170,6 +170,21 @@ constexpr KernelFields kShadeMicrofacetFields = {.reads = "pixel sample prim o d
 // errors of it move the slope. That the pdf is the density of the direction that was really sampled does not hang on this.
 constexpr KernelBounds kShadeMicrofacetBounds = {
     .fields = {input_ulps("beta", 160, 1e-24), ulps("o", 0.9), input_ulps("d", 64), input_ulps("pdf", 13)},
+    .choice = {.margin = 4, .max_share = 2e-4}};
+// Rough dielectric: Beckmann's D, Smith's separable G, microfacets that reflect or refract by the dielectric Fresnel
+// reflectance, chosen among the visible ones (Walter et al. 2007; Heitz & d'Eon 2014). Takes light from both sides. Under -H, which
+// looks for lights on the viewer's side, pdf = 0 behind refraction.
+void light_rough_glass(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kLightRoughGlassFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};
+// As for the metals, and near the critical angle and near an index of 1 the half vector is a small difference of two long ones.
+constexpr KernelBounds kLightRoughGlassBounds = {.fields = {input_ulps("c", 20, 1e-24)},
+                                                 .choice = {.margin = 4, .max_share = 2e-4}};
+void shade_rough_glass(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kShadeRoughGlassFields = {.reads = "pixel sample prim o d n s err beta step",
+                                                 .writes = "o d beta pdf"};
+// The visible slope as for the metals. A choice is also that of the lobe.
+constexpr KernelBounds kShadeRoughGlassBounds = {
+    .fields = {input_ulps("beta", 160, 1e-24), ulps("o", 0.9), input_ulps("d", 64), input_ulps("pdf", 64)},
     .choice = {.margin = 4, .max_share = 2e-4}};
 // Perfect reflection; pdf = 0 (delta), or kConnected.
 void shade_mirror(const Plan& plan, const PathState& s, Range range);

@@ -4,14 +4,13 @@
 // with normals; every transform element; nested and instanced nodes; up_axis and unit, converted to z up and metres;
 // perspective cameras; diffuse (or emission) colours of phong, lambert, blinn and constant effects; and, in <extra>
 // techniques of profile CGL:
-//   effects      <mirror> reflectance; <glass> or <refraction> reflectance, transmittance, roughness (rendered as 0),
-//   ior;
+//   effects      <mirror> reflectance; <glass> or <refraction> reflectance, transmittance, roughness, ior;
 //                <microfacet> alpha, eta, k; <emission> radiance; <diffuse> or <lambertian> reflectance or albedo
 //   geometries   <sphere> radius
 //   lights       <area> color: the unit square around the light node's origin in its xy plane emits it towards -z.
 //   Where an
 //                emissive mesh lies, that mesh is the light and the area light is dropped.
-// Skipped with a notice: other lights, textures, lines, splines, controllers. Unknown elements are skipped silently.
+// Skipped with a notice: other lights, textures of other things than diffuse colours, lines, splines, controllers. Unknown elements are skipped silently.
 #pragma once
 
 #include <string>

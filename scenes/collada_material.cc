@@ -46,15 +46,16 @@ void read_tint(const Document& document, pugi::xml_node parent, const char* name
   if (const pugi::xml_node node = parent.child(name)) tint = read_albedo(document, node);
 }
 
-void read_glass(const Document& document, pugi::xml_node node, Material& material, std::vector<std::string>& notices) {
+void read_glass(const Document& document, pugi::xml_node node, Material& material) {
   material.kind = Material::Kind::kGlass;
   read_tint(document, node, "reflectance", material.reflectance);
   read_tint(document, node, "transmittance", material.transmittance);
   material.ior = read_positive(document, node, "ior", 100);
   if (const pugi::xml_node roughness = node.child("roughness")) {
-    const double value = document.number(roughness);
-    if (value < 0) document.fail(roughness, "must not be negative");
-    if (value > 0) notices.push_back("material " + quoted(material.name) + " is rough glass: rendered smooth");
+    material.roughness = document.number(roughness);
+    if (!(material.roughness >= 0 && material.roughness <= 1000)) {
+      document.fail(roughness, "must be between 0 and 1000");
+    }
   }
 }
 
@@ -68,13 +69,13 @@ void read_microfacet(const Document& document, pugi::xml_node node, Material& ma
 }
 
 // node: the child of a CGL technique.
-void read_cgl(const Document& document, pugi::xml_node node, Material& material, std::vector<std::string>& notices) {
+void read_cgl(const Document& document, pugi::xml_node node, Material& material) {
   const std::string_view kind = node.name();
   if (kind == "mirror") {
     material.kind = Material::Kind::kMirror;
     read_tint(document, node, "reflectance", material.reflectance);
   } else if (kind == "glass" || kind == "refraction") {
-    read_glass(document, node, material, notices);
+    read_glass(document, node, material);
   } else if (kind == "microfacet") {
     read_microfacet(document, node, material);
   } else if (kind == "emission") {
@@ -169,7 +170,7 @@ Material read_material(const Document& document, pugi::xml_node element, Texture
   if (!instance) document.fail(element, "has no <instance_effect>");
   const pugi::xml_node effect = document.refer(instance, "url", "effect");
   if (const pugi::xml_node cgl = cgl_material(effect)) {
-    read_cgl(document, cgl, material, notices);
+    read_cgl(document, cgl, material);
   } else {
     read_common(document, effect, textures, material, texcoords, notices);
   }

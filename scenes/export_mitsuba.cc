@@ -101,7 +101,9 @@ class Writer {
 
   void add_material(size_t index) {
     const Material& m = scene_.materials[index];
-    const char* type = m.kind == Kind::kGlass        ? "dielectric"
+    const bool rough = is_rough_glass(m);
+    const char* type = rough                         ? "roughdielectric"
+                       : m.kind == Kind::kGlass      ? "dielectric"
                        : m.kind == Kind::kMirror     ? "conductor"
                        : m.kind == Kind::kMicrofacet ? "roughconductor"
                                                      : "diffuse";
@@ -127,6 +129,10 @@ class Writer {
       case Kind::kGlass:
         set(node, "float", "int_ior", exact(m.ior));
         set(node, "float", "ext_ior", "1");
+        if (rough) {
+          set(node, "string", "distribution", "beckmann");
+          set(node, "float", "alpha", exact(m.roughness));
+        }
         rgb(node, "specular_reflectance", m.reflectance);
         rgb(node, "specular_transmittance", m.transmittance);
         break;

@@ -75,6 +75,10 @@ class Writer {
         break;
       case Kind::kGlass:
         text_ += "\"string type\" \"dielectric\" \"float eta\" [" + exact(m.ior) + "]";
+        if (is_rough_glass(m)) {
+          text_ += " \"float roughness\" [" + exact(m.roughness) + "] \"bool remaproughness\" false";
+          lost("is rough glass of Beckmann's distribution: pbrt's is GGX");
+        }
         if (m.reflectance != glm::dvec3(1.0) || m.transmittance != glm::dvec3(1.0))
           lost("is tinted glass: pbrt has none");
         break;

@@ -90,8 +90,8 @@ Material read_gltf_material(const JsonValue& m, const std::function<uint32_t(con
   const bool is_diffuse = transmission < 0.5 && metallic < 0.5;
   if (texture.present() && !is_diffuse) notice("has a texture and is not diffuse: half of its colour stands for it");
   if (transmission >= 0.5) {
-    if (roughness > 0 && pbr["roughnessFactor"].present()) notice("is rough glass: rendered smooth");
     make_glass(m, base, material);
+    if (pbr["roughnessFactor"].present()) material.roughness = roughness * roughness;
   } else if (metallic >= 0.5) {
     make_metal(base, roughness * roughness, material);
   } else {

@@ -13,8 +13,8 @@ namespace lanewise {
 
 // An element of "materials", by the first of these that holds:
 //   emissiveFactor times KHR_materials_emissive_strength is not black: emission of that radiance, from the front alone
-//   transmissionFactor (KHR_materials_transmission) >= 0.5: smooth glass of index KHR_materials_ior (1.5), base
-//     colour as its transmittance
+//   transmissionFactor (KHR_materials_transmission) >= 0.5: glass of index KHR_materials_ior (1.5), base colour as its
+//     transmittance, of Beckmann roughness alpha = roughness^2 where a roughness is given
 //   metallicFactor >= 0.5: with roughness below 0.01 a mirror of the base colour, otherwise a metal of Beckmann
 //     roughness alpha = roughness^2 (glTF's own distribution is GGX) whose reflectance head on is the base colour
 //   else: diffuse, of the base colour; the coat that glTF gives such surfaces is left out

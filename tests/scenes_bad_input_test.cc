@@ -197,7 +197,7 @@ TEST_CASE("scenes: values out of range") {
   cgl("<glass><ior>0</ior></glass>", "above 0");
   cgl("<glass><ior>-1.5</ior></glass>", "above 0");
   cgl("<glass/>", "no <ior>");
-  cgl("<glass><ior>1.5</ior><roughness>-1</roughness></glass>", "negative");
+  cgl("<glass><ior>1.5</ior><roughness>-1</roughness></glass>", "must be between 0 and 1000");
   cgl("<glass><ior>1.5</ior><transmittance>1 1 2</transmittance></glass>", "between 0 and 1");
   cgl("<mirror><reflectance>1 1 1.5</reflectance></mirror>", "between 0 and 1");
   cgl("<microfacet><alpha>0</alpha><eta>1 1 1</eta><k>1 1 1</k></microfacet>", "above 0");

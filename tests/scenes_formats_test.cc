@@ -161,6 +161,11 @@ TEST_CASE("formats: glTF materials") {
   CHECK(glass.ior == 1.33);
   CHECK(glass.transmittance == dvec3(0.9, 1, 1));
   CHECK(glass.reflectance == dvec3(1.0));
+  CHECK(glass.roughness == 0);
+  const Material frosted = gltf_material(
+      R"({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5},
+      "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}})");
+  CHECK(frosted.roughness == 0.25);
   const Material light = gltf_material(
       R"({"emissiveFactor": [1, 0.5, 0], "extensions": 
       {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}})");

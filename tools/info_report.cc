@@ -46,7 +46,10 @@ std::vector<Value> values_of(const Material& m) {
     case Kind::kMirror:
       return {{"reflectance", list(m.reflectance)}};
     case Kind::kGlass:
-      return {{"ior", {m.ior}}, {"reflectance", list(m.reflectance)}, {"transmittance", list(m.transmittance)}};
+      return {{"ior", {m.ior}},
+              {"roughness", {m.roughness}},
+              {"reflectance", list(m.reflectance)},
+              {"transmittance", list(m.transmittance)}};
     case Kind::kMicrofacet:
       return {{"alpha", {m.alpha}}, {"eta", list(m.eta)}, {"k", list(m.k)}};
     case Kind::kEmission:

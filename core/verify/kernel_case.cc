@@ -20,6 +20,7 @@
 #include "kernels/reference/shade_glass.h"
 #include "kernels/reference/shade_microfacet.h"
 #include "kernels/reference/shade_mirror.h"
+#include "kernels/reference/shade_rough_glass.h"
 #include "kernels/reference/surface.h"
 #include "kernels/reference/texture.h"
 
@@ -89,6 +90,10 @@ const KernelCase kCases[] = {
      fill_of_bin<kMicrofacet, kLight>},
     {"shade_microfacet", shade_microfacet, twin::shade_microfacet<double>, kShadeMicrofacetBounds, "o d n s",
      fill_of_bin<kMicrofacet, kShade>},
+    {"light_rough_glass", light_rough_glass, twin::light_rough_glass<double>, kLightRoughGlassBounds, "d s l l_pdf",
+     fill_of_bin<kRoughGlass, kLight>},
+    {"shade_rough_glass", shade_rough_glass, twin::shade_rough_glass<double>, kShadeRoughGlassBounds, "o d n s",
+     fill_of_bin<kRoughGlass, kShade>},
     {"shade_mirror", shade_mirror, twin::shade_mirror<double>, kShadeMirrorBounds, "o d n s",
      fill_of_bin<kMirror, kShade>},
     {"shade_glass", shade_glass, twin::shade_glass<double>, kShadeGlassBounds, "o d n s", fill_of_bin<kGlass, kShade>},

@@ -10,11 +10,11 @@
 namespace lanewise::verify {
 namespace {
 
-// Puts another small sphere of a new material at the back of the box; the seventeenth sphere makes them a tree.
+// Puts another small sphere of a new material at the back of the box, 17 in a row; the seventeenth sphere makes them a tree.
 void add_sample(Scene& scene, const Material& material) {
-  const double i = static_cast<double>(scene.spheres.size());
+  const double i = static_cast<double>(scene.spheres.size()), row = std::floor(i / 17);
   scene.spheres.push_back({material.name,
-                           {-0.9 + 0.11 * i, 0.8, 0.2 + 0.05 * std::fmod(7 * i, 5)},
+                           {-0.9 + 0.11 * (i - 17 * row), 0.8 - 0.12 * row, 0.2 + 0.05 * std::fmod(7 * i, 5)},
                            0.05,
                            static_cast<uint32_t>(scene.materials.size())});
   scene.materials.push_back(material);
@@ -37,6 +37,16 @@ Scene rich_scene() {
     glass.reflectance = {1, 0.9, 0.8};
     glass.transmittance = {0.8, 0.9, 1};
     add_sample(scene, glass);
+  }
+  for (const double ior : {0.67, 1.01, 1.5, 2.5}) {
+    for (const double roughness : {1e-3, 0.05, 0.3, 1.0}) {
+      Material glass = scene.materials[test::kGlassMaterial];
+      glass.ior = ior;
+      glass.roughness = roughness;
+      glass.reflectance = {1, 0.9, 0.8};
+      glass.transmittance = {0.8, 0.9, 1};
+      add_sample(scene, glass);
+    }
   }
   for (int i = 0; i < 3; ++i) add_sample(scene, scene.materials[i == 1 ? test::kSmallLight : test::kMirrorMaterial]);
   // A light of many triangles of different sizes.

@@ -21,8 +21,9 @@ T schlick_fresnel(T f0, T c) {
 
 template <class T>
 struct Dielectric {
-  T reflectance;  // in [0, 1]; exactly 1 under total internal reflection
-  T cos_t;        // of the refracted direction against the normal; 0 under total internal reflection
+  T reflectance;    // in [0, 1]; exactly 1 under total internal reflection
+  T transmittance;  // 1 - reflectance, of the exact formulas without cancellation
+  T cos_t;          // of the refracted direction against the normal; 0 under total internal reflection
 };
 
 // c: cosine of incidence in [0, 1], on the side of index n_i.
@@ -31,18 +32,21 @@ Dielectric<T> fresnel_dielectric(Fresnel model, T c, T n_i, T n_t) {
   const T n_i2 = n_i * n_i, n_t2 = n_t * n_t;
   const T e = (n_t - n_i) * (n_t + n_i);
   const T g2 = e + square(n_i * c);  // (n_t cos_t)^2
-  if (!(g2 > 0)) return {1, 0};
+  if (!(g2 > 0)) return {1, 0, 0};
   const T g = std::sqrt(g2), cos_t = std::min(g / n_t, T(1));
   if (model == Fresnel::kExact) {
     // Amplitudes (n_i c - g) / (n_i c + g) and (n_t^2 c - n_i g) / (n_t^2 c + n_i g). Multiplied above and below by
     // their denominators, the numerators turn into differences of squares in which e factors out: nothing cancels as e
     // -> 0.
-    const T rs = e / square(n_i * c + g);
-    const T rp = e * ((n_t2 + n_i2) * c * c - n_i2) / square(n_t2 * c + n_i * g);
-    return {std::min((rs * rs + rp * rp) / 2, T(1)), cos_t};
+    const T s2 = square(n_i * c + g), p2 = square(n_t2 * c + n_i * g);
+    const T rs = e / s2;
+    const T rp = e * ((n_t2 + n_i2) * c * c - n_i2) / p2;
+    // What is left of the squared amplitudes are products, 4 n_i c g and 4 n_t^2 c n_i g.
+    return {std::min((rs * rs + rp * rp) / 2, T(1)), 2 * n_i * c * g * (1 / s2 + n_t2 / p2), cos_t};
   }
   const T f0 = square((n_i - n_t) / (n_i + n_t));
-  return {schlick_fresnel(f0, model == Fresnel::kSchlick && n_i > n_t ? cos_t : c), cos_t};
+  const T reflectance = schlick_fresnel(f0, model == Fresnel::kSchlick && n_i > n_t ? cos_t : c);
+  return {reflectance, 1 - reflectance, cos_t};
 }
 
 // One channel of a conductor with index eta + i k; c in [0, 1].
