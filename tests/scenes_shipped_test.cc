@@ -78,6 +78,14 @@ TEST_CASE("shipped scenes: boxes with spheres") {
     CHECK(sphere.center.z == sphere.radius);
   }
   check_room(metal);
+  const Scene frosted = shipped("cornell_frosted.dae");
+  REQUIRE(frosted.textures.size() == 1);
+  CHECK(frosted.textures[0].texels.size() == 192 * 128);
+  CHECK(frosted.materials[frosted.meshes[0].material].texture == 0);
+  CHECK(frosted.meshes[0].texcoords[0][2] == glm::dvec2(2, 2.5));
+  REQUIRE(frosted.spheres.size() == 2);
+  CHECK(is_rough_glass(frosted.materials[frosted.spheres[1].material]));
+  check_room(frosted);
 }
 
 TEST_CASE("shipped scenes: the furnace is a closed box that emits inwards, with camera and sphere in it") {
