@@ -8,9 +8,9 @@
 //                <microfacet> alpha, eta, k; <emission> radiance; <diffuse> or <lambertian> reflectance or albedo
 //   geometries   <sphere> radius
 //   lights       <area> color: the unit square around the light node's origin in its xy plane emits it towards -z.
-//   Where an
-//                emissive mesh lies, that mesh is the light and the area light is dropped.
-// Skipped with a notice: other lights, textures of other things than diffuse colours, lines, splines, controllers. Unknown elements are skipped silently.
+//                Where an emissive mesh lies, that mesh is the light and the area light is dropped.
+// and the textures of diffuse colours, with the texture coordinates that a binding names. Skipped with a notice: other lights,
+// lines, splines, controllers. Unknown elements, and textures of anything else, are skipped silently.
 #pragma once
 
 #include <string>
