@@ -13,6 +13,7 @@ Arrival::Arrival(const Vec& normal, double degrees) {
   y = glm::cross(z, x);
   wo.z = static_cast<float>(std::cos(degrees * pi / 180));  // as the kernel finds it where it is small
   wo.x = std::sqrt(1 - wo.z * wo.z);
+  wo.y = 0;
   LANEWISE_SET_VEC3(path, d, glm::vec3(-(wo.x * x + wo.z * z)));
   LANEWISE_SET_VEC3(path, n, glm::vec3(z));
   LANEWISE_SET_VEC3(path, s, glm::vec3(z));
