@@ -35,8 +35,8 @@ double height(const Vec& w) {
   return w.z > 0 ? t : 2 - t;
 }
 
-test::Domain sphere(const OfDirection& value) {
-  return {{0, 2}, {-pi, pi}, 2 * test::kLobeSide, test::kLobeSide, [value](double x, double azimuth) {
+test::Domain sphere(const OfDirection& value, uint32_t rows = test::kLobeSide) {
+  return {{0, 2}, {-pi, pi}, 2 * test::kLobeSide, rows, [value](double x, double azimuth) {
             const double t = x < 1 ? x : 2 - x, cosine = 1 - t * t, sine = t * std::sqrt(2 - t * t);
             return 2 * t * value({sine * std::cos(azimuth), sine * std::sin(azimuth), x < 1 ? cosine : -cosine});
           }};
@@ -100,7 +100,7 @@ TEST_CASE("shade_rough_glass: nothing but numbers, whatever the index, the rough
 TEST_CASE("chi-square: rough glass reflects and refracts with its density, from either side, on every target") {
   test::Family family;
   test::for_each_target([&](const char* target) {
-    for (const float alpha : {0.1f, 0.3f, 0.8f}) {
+    for (const float alpha : {0.05f, 0.3f, 0.8f}) {
       for (const double degrees : {0.0, 40.0, 75.0, 110.0, 150.0, 180.0}) {  // above 90 from inside
         Settings settings;
         settings.seed = family.tests();
@@ -110,19 +110,20 @@ TEST_CASE("chi-square: rough glass reflects and refracts with its density, from 
         const reference::RoughGlass<double> glass(plan.materials[0], inside);
         const Vec wo(arrival.wo.x, arrival.wo.y, std::abs(arrival.wo.z));
         const double side = inside ? -1 : 1;
-        test::ChiSquare test(sphere([&](const Vec& w) {
+        // Off the normal the lobes of small alpha are narrow in azimuth; quadrature finds 1.0002 for the integral otherwise.
+        const uint32_t rows = test::kLobeSide * (alpha < 0.1f ? 4 : 1);
+        const auto pdf_of = [&](const Vec& w) {
           return reference::evaluate_rough_glass(Fresnel::kExact, glass, wo, Vec(w.x, w.y, side * w.z)).pdf;
-        }));
+        };
+        test::ChiSquare test(sphere(pdf_of, rows));
         double worst = 0;
-        test::for_each_draw(
-            shade_rough_glass, plan, arrival.path, test::kDraws / 4, [&](const PathState& s, uint32_t i) {
-              if (s.pdf[i] == 0) return test.add_void();
-              const Vec w = arrival.next(s, i);
-              test.add(height(w), std::atan2(w.y, w.x));
-              const double pdf =
-                  reference::evaluate_rough_glass(Fresnel::kExact, glass, wo, Vec(w.x, w.y, side * w.z)).pdf;
-              worst = std::max(worst, std::abs(s.pdf[i] / pdf - 1));
-            });
+        test::for_each_draw(shade_rough_glass, plan, arrival.path, test::kDraws / 4,
+                            [&](const PathState& s, uint32_t i) {
+                              if (s.pdf[i] == 0) return test.add_void();
+                              const Vec w = arrival.next(s, i);
+                              test.add(height(w), std::atan2(w.y, w.x));
+                              worst = std::max(worst, std::abs(s.pdf[i] / pdf_of(w) - 1));
+                            });
         CHECK(worst < 2e-3);
         family.add(std::string(target) + " alpha " + std::to_string(alpha) + ", " + std::to_string(degrees), test.p());
       }
