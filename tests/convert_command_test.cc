@@ -199,6 +199,31 @@ TEST_CASE("convert command: eta and k of metals as Mitsuba and pbrt take them") 
   CHECK(pbrt.find("\"float roughness\" [0.05] \"bool remaproughness\" false") != std::string::npos);
 }
 
+TEST_CASE("convert command: rough glass as Mitsuba and pbrt take it, smooth where it is rendered smooth") {
+  if (nothing_to_test()) return;
+  const TemporaryFolder folder;
+  const std::string text = test::read_text(box()), zero = "<roughness>0<";
+  const size_t at = text.find(zero);
+  REQUIRE(at != std::string::npos);
+  for (const std::string roughness : {"0.25", "0.00005"}) {
+    CAPTURE(roughness);
+    const bool rough = roughness == "0.25";
+    const std::string scene = folder.file("a.dae");
+    test::write_text(scene, std::string(text).replace(at, zero.size(), "<roughness>" + roughness + "<"));
+    REQUIRE(convert(folder, {scene, "-f", "a.xml"}).exit_code == 0);
+    const ProcessResult result = convert(folder, {scene, "-f", "a.pbrt"});
+    REQUIRE(result.exit_code == 0);
+    const std::string xml = test::read_text(folder.file("a.xml")), pbrt = test::read_text(folder.file("a.pbrt"));
+    const auto has = [](const std::string& all, const char* part) { return all.find(part) != std::string::npos; };
+    CHECK(has(xml, "type=\"roughdielectric\"") == rough);
+    CHECK(has(xml, "type=\"dielectric\"") == !rough);
+    CHECK(has(xml, "name=\"distribution\" value=\"beckmann\"") == rough);
+    CHECK(has(xml, "name=\"alpha\" value=\"0.25\"") == rough);
+    CHECK(has(pbrt, "\"float roughness\" [0.25] \"bool remaproughness\" false") == rough);
+    CHECK(has(result.out, "is rough glass of Beckmann's distribution") == rough);
+  }
+}
+
 TEST_CASE("convert command: autofocus is a distance for others") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;

@@ -103,7 +103,7 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
   add_choice<BsdfSampling>(
       app, "--bsdf-sampling", o.settings.bsdf_sampling,
       {{"vndf", BsdfSampling::kVndf}, {"ndf", BsdfSampling::kNdf}, {"cosine", BsdfSampling::kCosine}},
-      "How microfacets choose a direction");
+      "How microfacet metals choose a direction; rough glass does so by vndf alone");
   add_choice<Fresnel>(app, "--fresnel", o.settings.fresnel,
                       {{"exact", Fresnel::kExact}, {"schlick", Fresnel::kSchlick}, {"course", Fresnel::kCourse}},
                       "Formulas for reflectance");
