@@ -19,6 +19,7 @@ namespace lanewise {
 namespace {
 
 using namespace test::lobes;
+using glm::dvec3;
 using std::numbers::pi;
 
 PlanMaterial rough(float ior, float alpha) {
@@ -218,6 +219,60 @@ TEST_CASE("rough glass: every way to look for light gives the same picture") {
   CHECK(mean(Direct::kLight, 4096) == doctest::Approx(mis).epsilon(0.005));
   CHECK(mean(Direct::kBsdf, 16384) == doctest::Approx(mis).epsilon(0.01));
   CHECK(mean(Direct::kHemisphere, 8192) == doctest::Approx(mis).epsilon(0.01));
+}
+
+namespace {
+
+// A pane at z = 0 seen from above, between a light over it and one under it, of which `over` and `under` are on.
+Scene pane(bool over, bool under) {
+  Scene scene = test::test_box();
+  scene.spheres.clear();
+  scene.materials[test::kGlassMaterial].roughness = 0.4;
+  scene.materials[test::kCeilingLight].radiance = dvec3(10);
+  const auto square = [](const char* name, uint32_t material, double side, const dvec3& at, bool up) {
+    Mesh mesh;
+    mesh.name = name;
+    mesh.material = material;
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+      mesh.positions.push_back(at + dvec3(side * x, side * y, 0));
+    }
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    if (!up) mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+    return mesh;
+  };
+  scene.meshes = {square("pane", test::kGlassMaterial, 2, {0, 0, 0}, true)};
+  if (over) scene.meshes.push_back(square("over", test::kCeilingLight, 0.7, {1.5, 0, 1.5}, false));
+  if (under) scene.meshes.push_back(square("under", test::kCeilingLight, 0.7, {0.3, 0, -1}, true));
+  scene.cameras[0].to_world = glm::dmat4(1.0);
+  scene.cameras[0].to_world[3] = {-1, 0, 3, 1};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("rough glass: light samples find what scattering finds, reflected and refracted, on every target") {
+  Settings settings;
+  settings.width = 6, settings.height = 4, settings.threads = 1, settings.max_depth = 1;
+  test::for_each_target([&](const char* target) {
+    for (const bool under : {false, true}) {
+      CAPTURE(target);
+      CAPTURE(under);
+      const auto mean = [&](Direct direct, uint32_t spp) {
+        settings.direct = direct;
+        settings.spp = spp;
+        double sum = 0;
+        // What is scattered once, and not the light behind the pane that a camera ray meets.
+        settings.only_bounce = 1;
+        const Image image = render(make_plan(pane(!under, under), settings)).image;
+        for (const float x : image.rgb) sum += x;
+        return sum / static_cast<double>(image.rgb.size());
+      };
+      const double light = mean(Direct::kLight, 1024);
+      CHECK(light > 0.01);
+      CHECK(mean(Direct::kBsdf, 8192) == doctest::Approx(light).epsilon(0.02));
+      CHECK(mean(Direct::kMis, 1024) == doctest::Approx(light).epsilon(0.01));
+    }
+  });
 }
 
 TEST_CASE("rough glass: smooth where roughness or index leave nothing rough") {
