@@ -6,7 +6,7 @@
 Both samplers render the same pictures with all else equal; every picture is compared with a reference of many samples, whose
 own estimated error is taken off. Writes perf/results/samplers.{json,md,svg}; exits with 1 if Sobol numbers need more than half
 the samples of independent ones for direct light, or are anywhere more than 5% worse. Needs tools/build and tools/setup
-charts; takes some 10 minutes on two cores.
+charts; takes some 40 minutes on two cores.
 """
 import argparse
 import json
