@@ -35,13 +35,6 @@ void append_to_string(void* context, void* data, int size) {
   static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<size_t>(size));
 }
 
-std::string encode(const std::vector<uint8_t>& rgb, uint32_t width, uint32_t height) {
-  std::string png;
-  const int w = static_cast<int>(width), h = static_cast<int>(height);
-  if (!stbi_write_png_to_func(append_to_string, &png, w, h, 3, rgb.data(), 3 * w)) throw std::bad_alloc();
-  return png;
-}
-
 Error damaged() { return Error(std::string("damaged picture (") + stbi_failure_reason() + ")"); }
 
 // A picture in memory, its size known to be bearable.
@@ -69,16 +62,11 @@ std::string encode_png(const Image& image) {
     if (!std::isfinite(v)) return uint8_t{0};
     return static_cast<uint8_t>(std::lround(255 * srgb_from_linear(std::clamp(v, 0.0f, 1.0f))));
   });
-  return encode(bytes, image.width, image.height);
-}
-
-std::string encode_png(const Texture& texture) {
-  std::vector<uint8_t> bytes;
-  bytes.reserve(3 * texture.texels.size());
-  for (const uint32_t texel : texture.texels) {
-    for (const int shift : {0, 8, 16}) bytes.push_back(static_cast<uint8_t>(texel >> shift));
-  }
-  return encode(bytes, texture.width, texture.height);
+  std::string png;
+  const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+  if (!stbi_write_png_to_func(append_to_string, &png, width, height, 3, bytes.data(), 3 * width))
+    throw std::bad_alloc();
+  return png;
 }
 
 Image decode_png(const std::string& bytes, uint64_t max_pixels) {

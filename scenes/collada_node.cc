@@ -52,12 +52,12 @@ class Instantiator {
     const Geometry& geometry = library_.geometry(instance);
     if (geometry.radius > 0) add_sphere(node, instance, geometry, to_world);
     for (const Part& part : geometry.parts) {
-      scene_.meshes.push_back(mesh_of(part));
-      place_mesh(scene_.meshes.back(), to_world);
-      scene_.meshes.back().name = name_of(node);
-      const uint32_t material = library_.material(instance, part.symbol, part.element);
-      scene_.meshes.back().material = material;
-      scene_.meshes.back().texcoords = library_.texcoords(instance, part, material);
+      Mesh mesh = mesh_of(part);
+      mesh.name = name_of(node);
+      mesh.material = library_.material(instance, part.symbol, part.element);
+      mesh.texcoords = library_.texcoords(instance, part, mesh.material);
+      place_mesh(mesh, to_world);
+      scene_.meshes.push_back(std::move(mesh));
     }
   }
 

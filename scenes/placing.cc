@@ -60,6 +60,7 @@ void place_mesh(Mesh& mesh, const glm::dmat4& to_world) {
   if (linear.mirrored) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
     for (auto& normals : mesh.normals) std::swap(normals[1], normals[2]);
+    for (auto& texcoords : mesh.texcoords) std::swap(texcoords[1], texcoords[2]);
   }
   for (size_t i = 0; i < mesh.normals.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];

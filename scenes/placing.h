@@ -21,7 +21,8 @@ struct Linear {
 // Of an invertible transform.
 Linear linear_part(const glm::dmat4& transform);
 
-// Takes a mesh from its own space to the world: positions; windings, reversed by a mirroring; normals of any length,
+// Takes a mesh from its own space to the world: positions; windings, reversed by a mirroring, with what each
+// corner has; normals of any length,
 // which become unit ones, and the face's own where they are zero or not finite. The transform must be invertible.
 void place_mesh(Mesh& mesh, const glm::dmat4& to_world);
 

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "core/image_io.h"
-#include "core/image_stb.h"
 #include "scenes/export.h"
 #include "scenes/load.h"
 #include "scenes/own_file.h"
@@ -22,7 +21,11 @@ using test::TemporaryFolder;
 using test::write_text;
 
 // Two texels: red, then blue.
-std::string png() { return encode_png(Texture{"", 2, 1, {0x0000ff, 0xff0000}}); }
+std::string png() {
+  Image image(2, 1);
+  image.rgb = {1, 0, 0, 0, 0, 1};
+  return encode_image("wood.png", image);
+}
 
 const std::string kColor = "<color>0.25 0.5 0.75 1</color>";
 const std::string kImages =
@@ -110,6 +113,15 @@ TEST_CASE("textures: COLLADA by sampler and surface, by the image's id, and as 1
   REQUIRE(loaded.mesh("shape").texcoords.size() == 1);
   CHECK(loaded.mesh("shape").texcoords[0] == std::array{dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)});
   CHECK(loaded.mesh("lamp-node").texcoords.empty());
+
+  // A mirroring node turns its triangles' windings around, and what their corners have.
+  const Loaded mirrored(varied("<translate>1 2 3</translate>", "<scale>-1 1 1</scale>", textured_dae()));
+  const Mesh& mesh = mirrored.mesh("shape");
+  for (size_t c = 0; c < 3; ++c) {
+    const dvec3& at = mesh.positions[mesh.triangles[0][c]];  // the file's (x, y), which are its coordinates too
+    CHECK(mesh.texcoords[0][c] == dvec2(-at.x, at.y));
+  }
+  CHECK(mesh.texcoords[0][1] == dvec2(0, 1));
 
   const Loaded by_id(varied("texture=\"samp\"", "texture=\"img\"", textured_dae()));
   check_wood(by_id, by_id.material("grey"));
