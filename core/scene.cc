@@ -52,16 +52,6 @@ void check_mesh(const Scene& scene, const Mesh& mesh) {
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.triangles.size()) {
     fail(scene, who + "has normals for some triangles only");
   }
-  if (!mesh.texcoords.empty() && mesh.texcoords.size() != mesh.triangles.size()) {
-    fail(scene, who + "has texture coordinates for some triangles only");
-  }
-  for (const auto& triangle : mesh.texcoords) {
-    for (const glm::dvec2& at : triangle) {
-      if (!(std::abs(at.x) <= kMaxTexcoord && std::abs(at.y) <= kMaxTexcoord)) {  // so that NaN fails
-        fail(scene, who + "has a texture coordinate that is not finite or above 1e6");
-      }
-    }
-  }
   for (const auto& triangle : mesh.triangles) {
     for (const uint32_t index : triangle) {
       if (index >= mesh.positions.size()) {
@@ -70,6 +60,20 @@ void check_mesh(const Scene& scene, const Mesh& mesh) {
       }
       if (!in_range(mesh.positions[index])) {
         fail(scene, who + "has a vertex whose world coordinates are not finite or above 1e15");
+      }
+    }
+  }
+}
+
+void check_texcoords(const Scene& scene, const Mesh& mesh) {
+  const std::string who = "mesh \"" + mesh.name + "\" ";
+  if (!mesh.texcoords.empty() && mesh.texcoords.size() != mesh.triangles.size()) {
+    fail(scene, who + "has texture coordinates for some triangles only");
+  }
+  for (const auto& triangle : mesh.texcoords) {
+    for (const glm::dvec2& at : triangle) {
+      if (!(std::abs(at.x) <= kMaxTexcoord && std::abs(at.y) <= kMaxTexcoord)) {  // so that NaN fails
+        fail(scene, who + "has a texture coordinate that is not finite or above 1e6");
       }
     }
   }
@@ -187,6 +191,7 @@ void finish_scene(Scene& scene) {
   for (const Mesh& mesh : scene.meshes) check_mesh(scene, mesh);
   for (const Sphere& sphere : scene.spheres) check_sphere(scene, sphere);
   settle_textures(scene);
+  for (const Mesh& mesh : scene.meshes) check_texcoords(scene, mesh);  // of those that a texture needs
 
   const glm::dvec3 center = bounds(scene).center();
   size_t dropped = 0;

@@ -30,8 +30,8 @@ class ArrayCache {
  public:
   explicit ArrayCache(const Document& document) : document_(document) {}
 
-  // The source's vectors of three, or of two, of which z is y again. Fails for missing elements, and for counts that disagree with the numbers in the
-  // text.
+  // The source's vectors of three, or of two, of which z is y again. Fails for missing elements, and for counts that
+  // disagree with the numbers in the text.
   Source read(pugi::xml_node source, size_t components = 3);
 
  private:

@@ -150,7 +150,7 @@ TEST_CASE("texture: what has no coordinates takes the mean colour, with a notice
   Scene scene = textured_box({"two", 2, 1, {0x000000, kWhiteTexel}}, {0, 0}, {1, 1});
   scene.meshes[kBack].texcoords.clear();
   scene.spheres[0].material = scene.meshes[kBack].material;
-  scene.meshes[0].texcoords = {{}, {}};  // not asked for
+  scene.meshes[0].texcoords = {{{{NAN, 0}, {}, {}}}};  // not asked for, whatever they are
   finish_scene(scene);
   CHECK(scene.materials[scene.meshes[kBack].material].reflectance == dvec3(0.25, 0.5, 0.5));
   CHECK(scene.meshes[kBack].material == scene.spheres[0].material);

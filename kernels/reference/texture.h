@@ -34,8 +34,7 @@ void texture(const Plan& plan, Path<T>& p) {
   const TexelSpan<T> x(glm::dot(vec3<T>(map), o) + map[3], t.width);
   const TexelSpan<T> y(glm::dot(vec3<T>(map + 4), o) + map[7], t.height);
   const auto texel = [&](uint32_t column, uint32_t row) {
-    const uint32_t bytes = plan.texels[t.first + size_t{row} * static_cast<uint32_t>(t.width) + column];
-    return Vec3<T>(kLinearOfByte[bytes & 255], kLinearOfByte[bytes >> 8 & 255], kLinearOfByte[bytes >> 16 & 255]);
+    return Vec3<T>(linear(plan.texels[t.first + size_t{row} * static_cast<uint32_t>(t.width) + column]));
   };
   const Vec3<T> upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.share);
   const Vec3<T> lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.share);
