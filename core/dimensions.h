@@ -34,6 +34,18 @@ constexpr uint32_t direction_set(uint32_t bounce) { return random_set(bounce + 1
 
 constexpr bool is_first_light_sample(const Step& step) { return step.light == 0 && step.light_sample == 0; }
 
+// What the numbers of samples beyond the first 2^32 of a pixel have in their seed beside the user's: a permutation of sample / 2^32,
+// 0 for 0, all of whose bits hang on all (the finaliser of splitmix64: Steele, Lea & Flood, OOPSLA 2014).
+constexpr uint64_t epoch_of(uint64_t sample) {
+  uint64_t x = sample >> 32;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+  return x ^ x >> 31;
+}
+
+// Where a second, independent estimate of a pixel begins to count its samples; so a first one has no more than these.
+constexpr uint64_t kSecondEstimate = uint64_t{1} << 63;
+
 // A Sobol sequence is this long; a pixel's further samples come from further sequences, scrambled afresh. Samples
 // first .. first + 2^k - 1 are a net of it (at their best together) where first is a multiple of 2^k.
 constexpr uint32_t kSequenceBits = 16;

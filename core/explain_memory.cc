@@ -76,16 +76,14 @@ void explain_memory(const Plan& plan, std::vector<Decision>& out) {
   const Settings& settings = plan.settings;
   const Window window = settings.window();
   const size_t pixels = size_t{settings.width} * settings.height;
-  const size_t picture = (3 * sizeof(float) + sizeof(uint32_t)) * window.width * window.height;
+  const size_t picture = (3 * sizeof(float) + sizeof(uint64_t)) * window.width * window.height;
   const bool noise = settings.noise > 0;
   // Those of --noise are in two halves, with an estimate of each.
-  const size_t sums =
-      noise ? 2 * (sizeof(PixelSums) + sizeof(std::array<double, 3>)) : sizeof(PixelSums) + sizeof(uint32_t);
+  const size_t sums = sizeof(PixelSums) + sizeof(uint64_t);
   const size_t threads = thread_count(settings);
   Memory memory(out);
-  memory.add("film", noise ? "two halves" : "sums, picture",
-             noise ? "each ends the other's estimate" : "sums of doubles", sums * pixels + picture, "per_pixel",
-             pixels);
+  memory.add("film", noise ? "two halves" : "sums, picture", noise ? "each ends the other's estimate" : "exact sums",
+             (noise ? 2 * (sums + sizeof(std::array<double, 3>)) : sums) * pixels + picture, "per_pixel", pixels);
   memory.add("paths", count_of(threads, "thread"),
              "three buffers of " + std::to_string(settings.wave) +
                  " paths: two that the sort moves between, one for those that met a light",

@@ -1,6 +1,8 @@
 #include "core/file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -122,6 +124,29 @@ void write_file(const std::string& path, std::string_view bytes) {
   // The name is safe on disk only once its folder is; file systems that cannot sync folders are none the worse for it.
   Descriptor entry(folder, O_RDONLY | O_DIRECTORY);
   if (entry.open()) entry.sync();
+}
+
+FileLock::FileLock(const std::string& path) : lock_(target_of(path).string() + ".lock"), fd_(-1) {
+  for (;;) {
+    fd_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (fd_ < 0) fail(lock_, errno);
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      ::close(fd_);
+      if (error == EWOULDBLOCK) throw Error(path + ": another render is writing it");
+      fail(lock_, error);
+    }
+    // Whoever had it may have removed the name just now: then the lock is on a file that nobody else will find.
+    struct stat by_name {
+    }, locked{};
+    if (::stat(lock_.c_str(), &by_name) == 0 && ::fstat(fd_, &locked) == 0 && by_name.st_ino == locked.st_ino) return;
+    ::close(fd_);
+  }
+}
+
+FileLock::~FileLock() {
+  ::unlink(lock_.c_str());
+  ::close(fd_);
 }
 
 std::string read_file(const std::string& path, uint64_t max_bytes) {

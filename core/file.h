@@ -19,4 +19,18 @@ void write_file(const std::string& path, std::string_view bytes);
 // The bytes of a file of at most max_bytes. Throws Error with the reason, without the path.
 std::string read_file(const std::string& path, uint64_t max_bytes);
 
+// Keeps other processes that ask for the same from a file, by a lock on PATH.lock beside it, until it is destroyed or the process
+// ends, however it does. Throws Error, naming the path, if another one has it.
+class FileLock {
+ public:
+  explicit FileLock(const std::string& path);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  std::string lock_;
+  int fd_;
+};
+
 }  // namespace lanewise

@@ -1,5 +1,6 @@
 #include "core/film.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lanewise {
@@ -10,18 +11,18 @@ Image develop(const Film& film, uint32_t width, const Window& window) {
     for (uint32_t x = 0; x < window.width; ++x) {
       const size_t i = size_t{window.y + y} * width + window.x + x;
       if (film.samples[i] == 0) continue;
-      const double scale = 1.0 / film.samples[i];
+      const double scale = 1 / static_cast<double>(film.samples[i]);
       float* rgb = image.pixel(x, y);
-      rgb[0] = static_cast<float>(film.sums[i].r * scale);
-      rgb[1] = static_cast<float>(film.sums[i].g * scale);
-      rgb[2] = static_cast<float>(film.sums[i].b * scale);
+      rgb[0] = static_cast<float>(film.sums[i].r.as<double>() * scale);
+      rgb[1] = static_cast<float>(film.sums[i].g.as<double>() * scale);
+      rgb[2] = static_cast<float>(film.sums[i].b.as<double>() * scale);
     }
   }
   return image;
 }
 
-std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Window& window) {
-  std::vector<uint32_t> counts;
+std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window) {
+  std::vector<uint64_t> counts;
   for (uint32_t y = window.y; y < window.y + window.height; ++y) {
     const auto row = film.samples.begin() + static_cast<ptrdiff_t>(size_t{y} * width + window.x);
     counts.insert(counts.end(), row, row + window.width);
@@ -29,9 +30,10 @@ std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Wind
   return counts;
 }
 
-PixelMean pixel_mean(const PixelSums& sums, uint32_t samples) {
-  const double scale = 1.0 / samples;
-  return {{static_cast<float>(sums.r * scale), static_cast<float>(sums.g * scale), static_cast<float>(sums.b * scale)},
+PixelMean pixel_mean(const PixelSums& sums, uint64_t samples) {
+  const double scale = 1 / static_cast<double>(samples);
+  return {{static_cast<float>(sums.r.as<double>() * scale), static_cast<float>(sums.g.as<double>() * scale),
+           static_cast<float>(sums.b.as<double>() * scale)},
           static_cast<float>(luminance_variance(sums, samples) * scale)};
 }
 
@@ -47,17 +49,27 @@ MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window)
   return picture;
 }
 
-double mean_luminance(const PixelSums& sums, uint32_t samples) { return luminance(sums.r, sums.g, sums.b) / samples; }
-
-double luminance_variance(const PixelSums& sums, uint32_t samples) {
-  if (samples < 2) return 0;
-  const double n = samples;
-  const double squares = sums.dy2 - sums.dy * sums.dy / n;
-  return squares < 0 ? 0 : squares / (n - 1);  // a NaN stays one
+double mean_luminance(const PixelSums& sums, uint64_t samples) {
+  return sums.y.as<double>() / static_cast<double>(samples);
 }
 
-bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance) {
-  const double error = std::sqrt(luminance_variance(sums, samples) / samples);
+double luminance_variance(const PixelSums& sums, uint64_t samples) {
+  if (samples < 2) return 0;
+  // The sums are exact, so that all that cancels does so here, where there are the digits for it.
+  const auto squares_around_mean = [&]<class T>(T) {
+    const T y = sums.y.as<T>();
+    return sums.y2.as<T>() - y * y / static_cast<T>(samples);
+  };
+  constexpr long double kCalm =
+      0x1p-12L;  // of the squares' sum: below, a long double has fewer digits left than a double
+  const long double quick = squares_around_mean(0.0L);
+  const bool calm = quick < kCalm * sums.y2.as<long double>();
+  const auto squares = static_cast<double>(calm ? squares_around_mean(__float128{}) : quick);
+  return std::max(0.0, squares) / static_cast<double>(samples - 1);
+}
+
+bool has_converged(const PixelSums& sums, uint64_t samples, double tolerance) {
+  const double error = std::sqrt(luminance_variance(sums, samples) / static_cast<double>(samples));
   return 1.96 * error <= tolerance * mean_luminance(sums, samples);
 }
 

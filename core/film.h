@@ -23,14 +23,14 @@ struct Film {
   // To be set to {} by the thread that is to add to them: then all threads share the work of touching fresh pages, and each
   // has its own near.
   std::vector<PixelSums, UninitializedAllocator<PixelSums>> sums;
-  std::vector<uint32_t> samples;  // behind each pixel's sums; 0: they are not looked at
+  std::vector<uint64_t> samples;  // behind each pixel's sums; 0: they are not looked at
 
   explicit Film(size_t pixels) : sums(pixels), samples(pixels) {}
 };
 
 // The mean of each pixel of the window, and how many samples it is of. width: of the whole picture.
 Image develop(const Film& film, uint32_t width, const Window& window);
-std::vector<uint32_t> sample_counts(const Film& film, uint32_t width, const Window& window);
+std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window);
 
 // The mean of a pixel's samples, and the variance of the mean's luminance, were they independent.
 struct PixelMean {
@@ -43,16 +43,16 @@ struct MeanPicture {
   std::vector<PixelMean> pixels;
 };
 
-PixelMean pixel_mean(const PixelSums& sums, uint32_t samples);
+PixelMean pixel_mean(const PixelSums& sums, uint64_t samples);
 MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window);
 
 // Of a pixel's luminance: the mean of its samples, and their variance sigma^2 (unbiased; 0 for one sample). samples > 0.
-double mean_luminance(const PixelSums& sums, uint32_t samples);
-double luminance_variance(const PixelSums& sums, uint32_t samples);
+double mean_luminance(const PixelSums& sums, uint64_t samples);
+double luminance_variance(const PixelSums& sums, uint64_t samples);
 
 // The rule of -a: whether a pixel's 95% confidence interval is within the tolerance, 1.96 sigma / sqrt(n) <= tolerance * mean.
 // It looks at the samples that the picture is made of, so it stops sooner where they happen to be dark: biased low, on
 // skewed pixels by far more than the tolerance (perf/results/adaptive_bias.md). A NaN never converges.
-bool has_converged(const PixelSums& sums, uint32_t samples, double tolerance);
+bool has_converged(const PixelSums& sums, uint64_t samples, double tolerance);
 
 }  // namespace lanewise

@@ -11,8 +11,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/dimensions.h"
 #include "core/error_estimate.h"
+#include "core/film.h"
 #include "core/image.h"
+#include "core/saved_render.h"
 #include "core/settings.h"
 #include "kernels/kernels.h"
 
@@ -22,38 +25,41 @@ class NoiseFilm {
  public:
   static constexpr uint32_t kHalves = 2;
   static constexpr uint32_t kFirstSamples = 16;    // of each half before anything is decided
+  static constexpr uint32_t kLongestRound = 4096;  // so that a portion is done in a second or so
   static constexpr uint32_t kBlock = 8;            // side of a block in pixels, on a grid from the picture's corner
   static constexpr double kLeastLuminance = 0.01;  // added to means, so that black blocks end: as in the measure MRSE
 
   // Draws the blocks that can have a say in the window's pixels, of a picture of width x height. noise: the standard error
   // that luminance may keep, relative to itself + kLeastLuminance, root mean square over a block. max_samples: of a pixel,
-  // from 2 kFirstSamples to kMaxSamples; odd ones are rounded down, larger ones cut off.
-  NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint32_t max_samples);
-
-  // Where the numbers of a half's samples begin: multiples of 2^16, where a sequence of low discrepancy starts anew. Not 2^31
-  // apart: a difference in the top bit alone reaches only the top bits of the hash that makes the random numbers, and leaves
-  // the halves correlated.
-  static constexpr uint32_t kHalfStart[kHalves] = {0, 0x9E370000};
-  static constexpr uint32_t kMaxSamples = 1u << 31;  // of a pixel, so that the halves do not meet
+  // at least 2 kFirstSamples; odd ones are rounded down.
+  NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint64_t max_samples);
 
   // The round to draw now: of every pixel of the list drawing(half), count() samples from number first(half) on, added to
   // sums(half)[pixel]. Then end_round(). When count() is 0 there is no more.
   uint32_t count() const { return count_; }
-  uint32_t first(uint32_t half) const { return kHalfStart[half] + drawn_; }
+  uint64_t first(uint32_t half) const { return (half == 0 ? 0 : kSecondEstimate) + drawn_; }
   std::vector<uint32_t> drawing(uint32_t half) const;
-  PixelSums* sums(uint32_t half) { return halves_[half].sums.data(); }
+  PixelSums* sums(uint32_t half) { return halves_[half].film.sums.data(); }
+  // For a round that may be left before its end: what has been drawn of it, from any thread; and the pixels that have not been.
+  void drew(uint32_t half, const std::vector<uint32_t>& pixels);
+  std::vector<uint32_t> behind(uint32_t half) const;
+  double round_pixels() const;  // of both halves
   // Before the round is drawn: to fewer samples. To 0: end_round() then ends all estimates as they are.
   void shorten(uint32_t count);
   void end_round();
 
-  // Samples drawn in all, and how many it will be, as far as can be said from the noise that is left.
+  // With all that it has drawn, also of the round.
+  void save(SavedRender& saved) const;
+  void load(const SavedRender& saved);
+
+  // Samples drawn in all up to the round, and how many it will be, as far as can be said from the noise that is left.
   double drawn() const { return total_; }
   double expected() const { return total_ + left_; }
 
-  // Of the window: its picture, the samples drawn for each pixel, and the share of its pixels whose block came to the noise
-  // asked for before max_samples.
+  // Of the window: its picture, as it would be if the film ended now; the samples drawn for each pixel; and the share of its
+  // pixels whose block came to the noise asked for before max_samples.
   Image develop() const;
-  std::vector<uint32_t> sample_counts() const;
+  std::vector<uint64_t> sample_counts() const;
   double converged() const;
 
   // Of the window, as it would be if the film ended now. After the first round.
@@ -61,19 +67,22 @@ class NoiseFilm {
 
  private:
   struct Half {
-    std::vector<PixelSums> sums;                  // of all samples, also those behind the estimate's end
+    Film film;                                    // of all samples, also those behind the estimate's end
     std::vector<std::array<double, 3>> estimate;  // mean RGB
     // A block each:
-    std::vector<uint32_t> samples;   // of each of its pixels, in sums
     std::vector<uint8_t> converged;  // 1: these samples say that the other half may stop; for good
     std::vector<uint8_t> ended;      // 1: the estimate is made
 
+    explicit Half(size_t pixels) : film(pixels), estimate(pixels) {}
     bool draws(uint32_t block) const { return !ended[block] || !converged[block]; }
   };
 
   // The noise that the block would have if both halves had as many samples as this one, over what it may have.
   double excess(const Half& half, uint32_t block) const;
   bool converged_around(const Half& half, uint32_t block) const;
+  uint32_t blocks() const { return blocks_.width * blocks_.height; }
+  // The pixels that are drawn.
+  Window area() const;
   template <class F>
   void for_each_pixel(uint32_t block, const F& f) const;
   uint32_t block_of(uint32_t x, uint32_t y) const;
@@ -83,12 +92,12 @@ class NoiseFilm {
   uint32_t width_, height_;
   Window window_;
   double noise_;
-  uint32_t max_drawn_;  // of a half
+  uint64_t max_drawn_;  // of a half
   Window blocks_;       // that are drawn, in blocks
-  uint32_t drawn_ = 0;  // by each half that still draws
+  uint64_t drawn_ = 0;  // by each half that still draws, before the round
   uint32_t count_ = 0;
   double total_ = 0, left_ = 0;
-  Half halves_[kHalves];
+  std::array<Half, kHalves> halves_;
 };
 
 }  // namespace lanewise

@@ -22,7 +22,7 @@ namespace lanewise {
   KEPT(float, L_g, "")                                                                                   \
   KEPT(float, L_b, "")                                                                                   \
   KEPT(uint32_t, pixel, "y * width + x, row 0 at the top")                                               \
-  KEPT(uint32_t, sample, "index of the sample within its pixel")                                         \
+  KEPT(uint32_t, sample, "index of the sample within its pixel, modulo 2^32: see Step::epoch")           \
   KEPT(float, o_x, "ray origin, offset off the surface it leaves; surface: the hit point itself")        \
   KEPT(float, o_y, "")                                                                                   \
   KEPT(float, o_z, "")                                                                                   \
@@ -72,6 +72,7 @@ struct Step {
   uint32_t light = 0;         // the light that sample_light samples
   uint32_t light_sample = 0;  // which of the plan's samples of that light
   bool connection = false;    // by way of a sphere: see core/plan_connections.h
+  uint64_t epoch = 0;         // epoch_of() their samples: 0 for a pixel's first 2^32
 };
 
 // The samples that a wave computes: its path i is sample first_sample + j % samples of pixel pixels[j / samples], with
@@ -79,7 +80,7 @@ struct Step {
 struct Batch {
   const uint32_t* pixels = nullptr;
   uint32_t samples = 0;       // per pixel, > 0
-  uint32_t first_sample = 0;  // first_sample + samples fits in 32 bits
+  uint64_t first_sample = 0;  // the samples do not reach over a multiple of 2^32
   uint64_t first_path = 0;
   uint32_t paths = 0;  // at most the wave's size
 };

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <utility>
+
+#include "core/dimensions.h"
+
 namespace lanewise {
 
-Probes::Probes(const Settings& settings, bool on) : width_(settings.width), window_(settings.window()) {
+Probes::Probes(const Settings& settings, bool on)
+    : width_(settings.width), window_(settings.window()), first_sample_(settings.first_sample) {
   if (!on) return;
   const uint64_t pixels = uint64_t{window_.width} * window_.height;
   // A rank-1 lattice x + g y = 0 mod n, n a power of two, with g near n / golden ratio^2: no two probes are near each other.
@@ -26,6 +30,24 @@ size_t Probes::place(size_t probe) const {
 
 void Probes::exchange(Film& film, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) std::swap(film.sums[pixels_[i]], sums_[i]);
+}
+
+void Probes::save(SavedRender& saved) const {
+  if (pixels_.empty()) return;
+  Film film(size_t{width_} * (window_.y + window_.height));
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    film.sums[pixels_[i]] = sums_[i];
+    film.samples[pixels_[i]] = samples_;
+  }
+  saved.put_film("probes", width_, film);
+}
+
+void Probes::load(const SavedRender& saved) {
+  if (pixels_.empty() || !saved.has_film("probes")) return;
+  Film film(size_t{width_} * (window_.y + window_.height));
+  saved.get_film("probes", width_, film);
+  for (size_t i = 0; i < pixels_.size(); ++i) sums_[i] = film.sums[pixels_[i]];
+  samples_ = film.samples[pixels_[0]];
 }
 
 }  // namespace lanewise

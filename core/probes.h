@@ -6,16 +6,15 @@
 #include <vector>
 
 #include "core/film.h"
-#include "core/noise_film.h"
+#include "core/saved_render.h"
 #include "core/settings.h"
 
 namespace lanewise {
 
 class Probes {
  public:
-  static constexpr uint32_t kMostSpacing = 32;        // one pixel in so many is a probe,
-  static constexpr uint32_t kWanted = 256;            // or more where a picture would have fewer probes than this
-  static constexpr uint32_t kMostSamples = 1u << 30;  // of a pixel, so that first and second ones do not meet
+  static constexpr uint32_t kMostSpacing = 32;  // one pixel in so many is a probe,
+  static constexpr uint32_t kWanted = 256;      // or more where a picture would have fewer probes than this
 
   // No probes if `on` is false.
   Probes(const Settings& settings, bool on);
@@ -24,13 +23,16 @@ class Probes {
   const std::vector<uint32_t>& pixels() const { return pixels_; }
 
   // Samples behind all second estimates, and the number of the next one.
-  uint32_t samples() const { return samples_; }
-  uint32_t next_sample() const { return NoiseFilm::kHalfStart[1] + samples_; }
+  uint64_t samples() const { return samples_; }
+  uint64_t next_sample() const { return kSecondEstimate + first_sample_ + samples_; }
 
   // Puts the second sums of probes begin .. end - 1 in the place of the film's, to be added to, and the film's in theirs; once
   // more puts all back.
   void exchange(Film& film, size_t begin, size_t end);
   void drew(uint32_t count) { samples_ += count; }
+
+  void save(SavedRender& saved) const;
+  void load(const SavedRender& saved);
 
   // Of a probe, when all is put back: where it is in the window's rows, and its second estimate.
   size_t place(size_t probe) const;
@@ -41,7 +43,8 @@ class Probes {
   Window window_;
   std::vector<uint32_t> pixels_;
   std::vector<PixelSums> sums_;
-  uint32_t samples_ = 0;
+  uint64_t first_sample_;
+  uint64_t samples_ = 0;
 };
 
 }  // namespace lanewise

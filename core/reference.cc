@@ -2,6 +2,7 @@
 // than fast; in float it is what the SIMD renderer must reproduce, in double the oracle of its accuracy.
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "core/plan_connections.h"
 #include "core/render.h"
@@ -100,7 +101,7 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
   reference::generate(plan, p);
   ++profile.samples;
   for (uint32_t bounce = 0;; ++bounce) {
-    p.step = {.bounce = bounce};
+    p.step.bounce = bounce;
     if (bounce > 0) ++profile.bounce_rays;
     reference::intersect(plan, p);
     if (plan.settings.shows(bounce)) {
@@ -126,10 +127,11 @@ bool is_valid(const Path<T>& p) {
 
 // Adds one sample to the pixel's sums.
 template <class T>
-void sample_pixel(const Plan& plan, uint32_t pixel, uint32_t sample, PixelSums& sums, Profile& profile) {
+void sample_pixel(const Plan& plan, uint32_t pixel, uint64_t sample, PixelSums& sums, Profile& profile) {
   Path<T> p;
   p.pixel = pixel;
-  p.sample = sample;
+  p.sample = static_cast<uint32_t>(sample);
+  p.step.epoch = epoch_of(sample);
   trace(plan, p, profile);
   if (is_valid(p)) {
     sums.add(p.L_r, p.L_g, p.L_b);
@@ -142,11 +144,11 @@ void sample_pixel(const Plan& plan, uint32_t pixel, uint32_t sample, PixelSums& 
 }  // namespace
 
 template <class T>
-RenderResult render_reference(const Plan& plan, const std::function<void(const Progress&)>& progress) {
+RenderResult render_reference(const Plan& plan, const RenderControl& control) {
   const auto start = std::chrono::steady_clock::now();
   const uint32_t threads = thread_count(plan.settings);
   std::vector<Profile> profiles(threads);
-  const auto draw = [&](const std::vector<uint32_t>& pixels, uint32_t first, uint32_t count, PixelSums* sums,
+  const auto draw = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
                         uint32_t worker) {
     Profile& profile = profiles[worker];
     const uint64_t before = profile.rays();
@@ -155,12 +157,16 @@ RenderResult render_reference(const Plan& plan, const std::function<void(const P
     }
     return profile.rays() - before;
   };
-  Exposure exposure = expose(plan.settings, threads, draw, progress);
+  const RenderControl counting = count_invalid(control, [&] {
+    return std::accumulate(profiles.begin(), profiles.end(), uint64_t{0},
+                           [](uint64_t sum, const Profile& p) { return sum + p.invalid_samples; });
+  });
+  Exposure exposure = expose(plan.settings, threads, draw, counting);
 
-  return make_result(std::move(exposure), profiles, std::chrono::steady_clock::now() - start);
+  return make_result(std::move(exposure), profiles, control.resume, std::chrono::steady_clock::now() - start);
 }
 
-template RenderResult render_reference<float>(const Plan&, const std::function<void(const Progress&)>&);
-template RenderResult render_reference<double>(const Plan&, const std::function<void(const Progress&)>&);
+template RenderResult render_reference<float>(const Plan&, const RenderControl&);
+template RenderResult render_reference<double>(const Plan&, const RenderControl&);
 
 }  // namespace lanewise

@@ -12,7 +12,13 @@ namespace lanewise {
 namespace {
 
 // Adds samples first .. first + count - 1 of all the pixels to their sums, wave by wave.
-void run_batches(Wave& wave, const std::vector<uint32_t>& pixels, uint32_t first, uint32_t count, PixelSums* sums) {
+void run_batches(Wave& wave, const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums) {
+  const uint64_t epoch_left = (uint64_t{1} << 32) - first % (uint64_t{1} << 32);
+  if (count > epoch_left) {
+    const auto head = static_cast<uint32_t>(epoch_left);
+    run_batches(wave, pixels, first, head, sums);
+    return run_batches(wave, pixels, first + head, count - head, sums);
+  }
   Batch batch{.pixels = pixels.data(), .samples = count, .first_sample = first};
   const uint64_t total = uint64_t{count} * pixels.size();
   for (; batch.first_path < total; batch.first_path += batch.paths) {
@@ -23,11 +29,11 @@ void run_batches(Wave& wave, const std::vector<uint32_t>& pixels, uint32_t first
 
 }  // namespace
 
-RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress, ProfileDetail detail) {
+RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetail detail) {
   const auto start = std::chrono::steady_clock::now();
   const uint32_t threads = thread_count(plan.settings);
   std::vector<std::unique_ptr<Wave>> waves(threads);
-  const auto draw = [&](const std::vector<uint32_t>& pixels, uint32_t first, uint32_t count, PixelSums* sums,
+  const auto draw = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
                         uint32_t worker) {
     std::unique_ptr<Wave>& wave = waves[worker];
     if (!wave)
@@ -36,7 +42,12 @@ RenderResult render(const Plan& plan, const std::function<void(const Progress&)>
     run_batches(*wave, pixels, first, count, sums);
     return wave->profiler().profile.rays() - before;
   };
-  Exposure exposure = expose(plan.settings, threads, draw, progress);
+  const RenderControl counting = count_invalid(control, [&] {
+    uint64_t invalid = 0;
+    for (const std::unique_ptr<Wave>& wave : waves) invalid += wave ? wave->profiler().profile.invalid_samples : 0;
+    return invalid;
+  });
+  Exposure exposure = expose(plan.settings, threads, draw, counting);
 
   const auto elapsed = std::chrono::steady_clock::now() - start;
   std::vector<Profile> profiles;
@@ -46,7 +57,7 @@ RenderResult render(const Plan& plan, const std::function<void(const Progress&)>
     profiles.push_back(wave->profiler().profile);
     logs.push_back(wave->profiler().log());
   }
-  RenderResult result = make_result(std::move(exposure), profiles, elapsed);
+  RenderResult result = make_result(std::move(exposure), profiles, control.resume, elapsed);
   result.logs = std::move(logs);
   return result;
 }

@@ -11,6 +11,7 @@
 #include "core/image.h"
 #include "core/plan.h"
 #include "core/profiler.h"
+#include "core/render_control.h"
 #include "core/settings.h"
 
 namespace lanewise {
@@ -33,35 +34,28 @@ struct RenderStats {
   std::vector<uint64_t> paths_by_length;  // [k]: paths of k scattering events; sums to samples
   std::vector<StageStats> stages;
   double samples_per_pixel = 0;  // mean over the picture; samples counts also those around a crop that --noise looks at
+  bool stopped = false;          // before all was drawn
   double converged = 1;          // share of the pixels that reached what -a or --noise asks for
   std::optional<ErrorEstimate> error;  // none with -a, of one sample a pixel, or if not asked for
   double seconds = 0;                  // wall clock of rendering alone
   uint32_t threads = 0;                // that did some of the work
 };
 
-struct Progress {
-  double fraction = 0;  // of the work that is known of, or of the time that --time gives it, in [0, 1]
-  uint64_t rays = 0;
-  double seconds = 0;
-  double mrse = -1;  // estimated error of the picture so far; -1: not known yet
-};
-
 struct RenderResult {
   Image image;                    // of settings.window()
-  std::vector<uint32_t> samples;  // per pixel of it
+  std::vector<uint64_t> samples;  // per pixel of it
   RenderStats stats;
   Profile profile;                            // what the statistics are made of, of all threads
   std::vector<std::vector<LoggedCall>> logs;  // of each thread, by the time that calls ended
 };
 
-// Renders plan.settings. progress, if given, is called from this thread some ten times a second. The pixels depend on
-// the plan's scene, settings and seed alone: not on threads, wave or tile order.
-RenderResult render(const Plan& plan, const std::function<void(const Progress&)>& progress = nullptr,
-                    ProfileDetail detail = {});
+// Renders plan.settings. The pixels depend on the plan's scene, settings and seed alone: not on threads, wave or tile order, nor on
+// where it was stopped and resumed.
+RenderResult render(const Plan& plan, const RenderControl& control = {}, ProfileDetail detail = {});
 
 // The same picture by the scalar path tracer made of the twins: T is float or double.
 template <class T>
-RenderResult render_reference(const Plan& plan, const std::function<void(const Progress&)>& progress = nullptr);
+RenderResult render_reference(const Plan& plan, const RenderControl& control = {});
 
 // Instruction sets: "scalar", "sse4", "avx2", "avx512"; those compiled in that this machine can run, best last.
 std::vector<std::string> supported_isas();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <map>
 
 #include "core/error_estimate.h"
 #include "core/film.h"
@@ -14,75 +16,118 @@ namespace {
 
 class Rounds {
  public:
-  Rounds(const Settings& settings, uint32_t threads, const Draw& draw,
-         const std::function<void(const Progress&)>& progress, const Clock& clock)
+  Rounds(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control)
       : settings_(settings),
         threads_(threads),
         draw_(draw),
-        progress_(progress),
-        clock_(clock),
-        start_(clock()),
+        control_(control),
+        intervals_(control),
         film_(size_t{settings.width} * settings.height),
-        probes_(settings, settings.estimate_error && settings.spp <= Probes::kMostSamples) {}
+        probes_(settings, settings.estimate_error) {
+    if (!control.resume) return;
+    control.resume->get_film("picture", settings.width, film_);
+    probes_.load(*control.resume);
+    done_ = least_samples();
+  }
 
   Exposure expose() {
+    draw_probes();
     while (const uint32_t count = next_round()) {
-      const double begin = clock_();
-      const bool whole = draw_tiles(count);
-      done_ += count;
-      if (!whole || (timed() && drawing_time_left() <= 0)) break;
-      draw_probes(count);
-      seconds_per_sample_ = (clock_() - begin) / count;
-      if (done_ < settings_.spp && (progress_ || timed())) close();
+      const double begin = intervals_.elapsed();
+      const bool whole = draw_tiles(done_ + count);
+      if (whole) done_ += count;
+      if (!whole || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
+      draw_probes();
+      seconds_per_sample_ = (intervals_.elapsed() - begin) / count;
+      if (done_ < settings_.spp && (control_.progress || timed())) close();
     }
-    return close();
+    Exposure exposure = close();
+    intervals_.save([&] { return state(); });
+    return exposure;
   }
 
  private:
   bool timed() const { return settings_.seconds > 0; }
-  double elapsed() const { return clock_() - start_; }
-  double drawing_time_left() const { return settings_.seconds - closing_ - elapsed(); }
+  double drawing_time_left() const { return settings_.seconds - closing_ - intervals_.elapsed(); }
 
   // 0: none.
   uint32_t next_round() const {
-    constexpr uint32_t kFirst = 64;  // samples before there is an error to show
-    const uint32_t left = settings_.spp - done_;
-    if (done_ == 0) return timed() ? 1 : probes_.pixels().empty() ? left : std::min(kFirst, left);
-    if (!timed()) return std::min(done_, left);
+    constexpr uint64_t kFirst = 64;  // samples before there is an error to show
+    const uint64_t left = settings_.spp - std::min(done_, settings_.spp);
+    if (done_ == 0) return timed() ? 1 : short_of(probes_.pixels().empty() ? left : std::min(kFirst, left));
+    if (!timed()) return short_of(probes_.pixels().empty() ? left : std::min(done_, left));
     const double time_left = drawing_time_left();
-    return time_left > 0 ? timed_round(done_, settings_.spp, time_left / seconds_per_sample_) : 0;
+    if (left == 0 || time_left <= 0) return 0;
+    return seconds_per_sample_ > 0 ? timed_round(done_, settings_.spp, time_left / seconds_per_sample_) : 1;
+  }
+  static uint32_t short_of(uint64_t count) { return static_cast<uint32_t>(std::min<uint64_t>(count, kLongestRound)); }
+
+  // Of the window's pixels.
+  uint64_t least_samples() const {
+    const std::vector<uint64_t> counts = sample_counts(film_, settings_.width, settings_.window());
+    return *std::min_element(counts.begin(), counts.end());
   }
 
-  // False if time was up before all were drawn. The first sample is drawn whatever the time.
-  bool draw_tiles(uint32_t count) {
-    const std::vector<Tile> tiles = make_tiles(settings_, count);
-    std::atomic<bool> whole{true};
-    const uint64_t rays_before = rays_;
-    run_workers(
-        threads_, tiles.size(),
-        [&](size_t item, uint32_t worker) -> uint64_t {
-          const std::vector<uint32_t>& pixels = tiles[item].pixels;
-          if (done_ == 0) {
-            for (const uint32_t pixel : pixels) film_.sums[pixel] = {};
-          } else if (timed() && drawing_time_left() <= 0) {
-            whole = false;
-            return 0;
-          }
-          const uint64_t rays = draw_(pixels, done_, count, film_.sums.data(), worker);
-          for (const uint32_t pixel : pixels) film_.samples[pixel] = done_ + count;
-          return rays;
-        },
-        [&](const Progress& round) {
-          rays_ = rays_before + round.rays;
-          report(done_ + round.fraction * count);
-        });
-    return whole;
+  // Tiles of the pixels that have fewer samples than that, each of pixels with the same number of them.
+  std::vector<Tile> tiles_behind(uint64_t samples) const {
+    std::vector<Tile> behind;
+    for (const Tile& tile : make_tiles(settings_, static_cast<uint32_t>(samples - done_))) {
+      std::map<uint64_t, Tile> by_samples;
+      for (const uint32_t pixel : tile.pixels) {
+        if (film_.samples[pixel] < samples) by_samples[film_.samples[pixel]].pixels.push_back(pixel);
+      }
+      for (auto& [drawn, part] : by_samples) behind.push_back(std::move(part));
+    }
+    return behind;
   }
 
-  void draw_probes(uint32_t count) {
+  // Brings every pixel to that many samples. False if time was up, or the render was stopped, before that. The first sample is
+  // drawn whatever the time.
+  bool draw_tiles(uint64_t samples) {
+    const double count = static_cast<double>(samples - done_);
+    size_t all = 0, left = 0;
+    do {
+      const std::vector<Tile> tiles = tiles_behind(samples);
+      if (all == 0) all = tiles.size();
+      left = tiles.size();
+      std::atomic<size_t> drawn{0};
+      const uint64_t rays_before = rays_;
+      run_workers(
+          threads_, tiles.size(),
+          [&](size_t item, uint32_t worker) -> uint64_t {
+            const std::vector<uint32_t>& pixels = tiles[item].pixels;
+            const uint64_t first = film_.samples[pixels[0]];
+            if (first > 0 && timed() && drawing_time_left() <= 0) return 0;
+            if (intervals_.pausing()) return 0;
+            if (first == 0) {
+              for (const uint32_t pixel : pixels) film_.sums[pixel] = {};
+            }
+            const uint64_t rays = draw_(pixels, settings_.first_sample + first, static_cast<uint32_t>(samples - first),
+                                        film_.sums.data(), worker);
+            for (const uint32_t pixel : pixels) film_.samples[pixel] = samples;
+            ++drawn;
+            return rays;
+          },
+          [&](const Progress& round) {
+            rays_ = rays_before + round.rays;
+            const auto behind = static_cast<double>(left - drawn);
+            report(static_cast<double>(done_) + (all > 0 ? 1 - behind / static_cast<double>(all) : 1) * count);
+          });
+      left -= drawn;
+      if (intervals_.save_due()) intervals_.save([&] { return state(); });
+    } while (left > 0 && !intervals_.stopped() && !(timed() && done_ > 0 && drawing_time_left() <= 0));
+    return left == 0;
+  }
+
+  // Brings them to the samples that the picture has.
+  void draw_probes() {
+    while (probes_.samples() < done_ && !probes_.pixels().empty()) draw_some_probes();
+  }
+
+  void draw_some_probes() {
     constexpr uint32_t kWaves = 4;  // enough that waves are full
+    const uint32_t count = short_of(done_ - probes_.samples());
     const size_t all = probes_.pixels().size(), portion = std::max(1u, kWaves * settings_.wave / count);
-    if (all == 0) return;
     std::atomic<uint64_t> rays{0};
     run_workers(
         threads_, (all + portion - 1) / portion,
@@ -101,35 +146,46 @@ class Rounds {
     rays_ += rays;
   }
 
+  SavedRender state() const {
+    SavedRender saved;
+    saved.area = settings_.window();
+    saved.put_film("picture", settings_.width, film_);
+    probes_.save(saved);
+    return saved;
+  }
+
   // The picture as it is.
   Exposure close() {
-    const double begin = clock_();
+    const double begin = intervals_.elapsed();
     const Window window = settings_.window();
     if (probes_.samples() > 1) {
       error_ = estimate_error(mean_picture(film_, settings_.width, window), probes_, threads_);
     }
-    Exposure exposure{develop(film_, settings_.width, window), sample_counts(film_, settings_.width, window), 1,
-                      error_};
-    closing_ = clock_() - begin;
-    report(done_);
+    Exposure exposure{.image = develop(film_, settings_.width, window),
+                      .samples = sample_counts(film_, settings_.width, window),
+                      .stopped = intervals_.stopped() && done_ < settings_.spp,
+                      .error = error_};
+    closing_ = intervals_.elapsed() - begin;
+    report(static_cast<double>(done_));
     return exposure;
   }
 
   void report(double samples) const {
-    if (!progress_) return;
-    const double fraction = std::max(samples / settings_.spp, timed() ? elapsed() / settings_.seconds : 0);
-    progress_({fraction, rays_, elapsed(), error_ ? error_->mrse : -1});
+    if (!control_.progress) return;
+    const double seconds = intervals_.elapsed();
+    const double fraction =
+        std::max(samples / static_cast<double>(settings_.spp), timed() ? seconds / settings_.seconds : 0);
+    control_.progress({fraction, rays_, seconds, error_ ? error_->mrse : -1});
   }
 
   const Settings& settings_;
   uint32_t threads_;
   const Draw& draw_;
-  const std::function<void(const Progress&)>& progress_;
-  const Clock& clock_;
-  double start_;
-  double closing_ = 0;  // seconds that close() takes, to be kept for the last one
-  double seconds_per_sample_ = 0;
-  uint32_t done_ = 0;  // samples of each pixel
+  const RenderControl& control_;
+  Intervals intervals_;
+  double closing_ = 0;             // seconds that close() takes, to be kept for the last one
+  double seconds_per_sample_ = 0;  // of each pixel, in the last round; 0: there was none yet
+  uint64_t done_ = 0;              // samples that every pixel has
   uint64_t rays_ = 0;
   Film film_;
   Probes probes_;
@@ -138,14 +194,13 @@ class Rounds {
 
 }  // namespace
 
-uint32_t timed_round(uint32_t done, uint32_t most, double fits) {
-  const uint32_t longest = std::min(done, most - done);
-  return fits * 0.9 >= longest ? longest : std::max(1u, static_cast<uint32_t>(0.9 * fits));
+uint32_t timed_round(uint64_t done, uint64_t most, double fits) {
+  const uint64_t longest = std::min({done, most - done, uint64_t{kLongestRound}});
+  return static_cast<uint32_t>(std::clamp(std::floor(0.9 * fits), 1.0, static_cast<double>(longest)));
 }
 
-Exposure expose_in_rounds(const Settings& settings, uint32_t threads, const Draw& draw,
-                          const std::function<void(const Progress&)>& progress, const Clock& clock) {
-  return Rounds(settings, threads, draw, progress, clock).expose();
+Exposure expose_in_rounds(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control) {
+  return Rounds(settings, threads, draw, control).expose();
 }
 
 }  // namespace lanewise

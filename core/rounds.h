@@ -5,12 +5,14 @@
 
 namespace lanewise {
 
+// A round draws no more samples of a pixel than this: so a tile is done in a second or so, and the render can stop.
+constexpr uint32_t kLongestRound = 4096;
+
 // Where time is given: how many samples of each pixel the next round draws, of `most` in all. done: so far, of each pixel;
 // fits: how many more there is time for, at the rate of the last round. Doubles, as sequences of low discrepancy have it, and
 // leaves a tenth of the time to set the rate right by; the last, single sample is for the clock to cut.
-uint32_t timed_round(uint32_t done, uint32_t most, double fits);
+uint32_t timed_round(uint64_t done, uint64_t most, double fits);
 
-Exposure expose_in_rounds(const Settings& settings, uint32_t threads, const Draw& draw,
-                          const std::function<void(const Progress&)>& progress, const Clock& clock);
+Exposure expose_in_rounds(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control);
 
 }  // namespace lanewise

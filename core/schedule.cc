@@ -1,7 +1,10 @@
 #include "core/schedule.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <iterator>
+#include <optional>
 
 #include "core/film.h"
 #include "core/noise_film.h"
@@ -13,98 +16,218 @@ namespace lanewise {
 namespace {
 
 // -a. Of a tile's pixels, batch after batch goes to those that have not converged.
-Exposure expose_adaptively(const Settings& settings, uint32_t threads, const Draw& draw,
-                           const std::function<void(const Progress&)>& progress) {
-  const Window window = settings.window();
-  std::vector<Tile> tiles = make_tiles(settings, settings.adaptive_batch);
-  Film film(size_t{settings.width} * settings.height);
-  run_workers(
-      threads, tiles.size(),
-      [&](size_t item, uint32_t worker) {
-        uint64_t rays = 0;
-        std::vector<uint32_t>& pixels = tiles[item].pixels;  // that have not converged
-        for (const uint32_t pixel : pixels) film.sums[pixel] = {};
-        for (uint32_t done = 0; done < settings.spp && !pixels.empty();) {
-          const uint32_t count = std::min(settings.adaptive_batch, settings.spp - done);
-          rays += draw(pixels, done, count, film.sums.data(), worker);
-          done += count;
-          for (const uint32_t pixel : pixels) film.samples[pixel] = done;
-          std::erase_if(pixels, [&](uint32_t pixel) {
-            return has_converged(film.sums[pixel], done, settings.adaptive_tolerance);
-          });
-        }
-        return rays;
-      },
-      progress);
+class Adaptive {
+ public:
+  Adaptive(const Settings& settings, const Draw& draw, const RenderControl& control)
+      : settings_(settings),
+        draw_(draw),
+        control_(control),
+        intervals_(control),
+        film_(size_t{settings.width} * settings.height) {
+    if (control.resume) control.resume->get_film("picture", settings.width, film_);
+  }
 
-  size_t noisy = 0, all = size_t{window.width} * window.height;
-  for (const Tile& tile : tiles) noisy += tile.pixels.size();
-  return {develop(film, settings.width, window),
-          sample_counts(film, settings.width, window),
-          1 - static_cast<double>(noisy) / static_cast<double>(all),
-          {}};
-}
+  Exposure expose(uint32_t threads) {
+    const std::vector<Tile> tiles = make_tiles(settings_, settings_.adaptive_batch);
+    std::vector<uint8_t> finished(tiles.size());
+    uint64_t rays = 0;
+    do {
+      const uint64_t rays_before = rays;
+      run_workers(
+          threads, tiles.size(),
+          [&](size_t item, uint32_t worker) -> uint64_t {
+            uint64_t tile_rays = 0;
+            if (!finished[item]) finished[item] = draw_tile(tiles[item], worker, tile_rays);
+            return tile_rays;
+          },
+          [&](const Progress& pass) {
+            rays = rays_before + pass.rays;
+            if (control_.progress) control_.progress({pass.fraction, rays, intervals_.elapsed()});
+          });
+      if (intervals_.save_due()) intervals_.save([&] { return state(); });
+    } while (!all_of(finished) && !intervals_.stopped());
+
+    const Window window = settings_.window();
+    size_t noisy = 0;
+    for (const Tile& tile : tiles) {
+      noisy += std::ranges::count_if(tile.pixels, [&](uint32_t pixel) { return !converged(pixel); });
+    }
+    Exposure exposure{.image = develop(film_, settings_.width, window),
+                      .samples = sample_counts(film_, settings_.width, window),
+                      .stopped = !all_of(finished),
+                      .converged = 1 - static_cast<double>(noisy) / (double{1} * window.width * window.height),
+                      .error = {}};
+    intervals_.save([&] { return state(); });
+    return exposure;
+  }
+
+ private:
+  static bool all_of(const std::vector<uint8_t>& flags) {
+    return std::ranges::all_of(flags, [](uint8_t flag) { return flag != 0; });
+  }
+
+  bool converged(uint32_t pixel) const {
+    const uint64_t samples = film_.samples[pixel];
+    return samples > 0 && has_converged(film_.sums[pixel], samples, settings_.adaptive_tolerance);
+  }
+
+  // A batch, or less at the end, to those that are furthest behind, until none is left. False if it was not to go on.
+  bool draw_tile(const Tile& tile, uint32_t worker, uint64_t& rays) {
+    std::vector<uint32_t> left = tile.pixels, pixels;  // not finished; to be drawn now
+    for (;;) {
+      std::erase_if(left, [&](uint32_t pixel) { return film_.samples[pixel] >= settings_.spp || converged(pixel); });
+      if (left.empty()) return true;
+      if (intervals_.pausing()) return false;
+      uint64_t done = settings_.spp;
+      for (const uint32_t pixel : left) done = std::min(done, film_.samples[pixel]);
+      pixels.clear();
+      std::ranges::copy_if(left, std::back_inserter(pixels),
+                           [&](uint32_t pixel) { return film_.samples[pixel] == done; });
+      if (done == 0) {
+        for (const uint32_t pixel : pixels) film_.sums[pixel] = {};
+      }
+      const auto count = static_cast<uint32_t>(std::min<uint64_t>(settings_.adaptive_batch, settings_.spp - done));
+      rays += draw_(pixels, settings_.first_sample + done, count, film_.sums.data(), worker);
+      for (const uint32_t pixel : pixels) film_.samples[pixel] = done + count;
+    }
+  }
+
+  SavedRender state() const {
+    SavedRender saved;
+    saved.area = settings_.window();
+    saved.put_film("picture", settings_.width, film_);
+    return saved;
+  }
+
+  const Settings& settings_;
+  const Draw& draw_;
+  const RenderControl& control_;
+  Intervals intervals_;
+  Film film_;
+};
 
 // --noise. A round's pixels are dealt out in portions of some waves. Where there is a time, rounds are shortened to it.
-Exposure expose_to_noise(const Settings& settings, uint32_t threads, const Draw& draw,
-                         const std::function<void(const Progress&)>& progress, const Clock& clock) {
+class ToNoise {
+ public:
+  ToNoise(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control)
+      : settings_(settings),
+        threads_(threads),
+        draw_(draw),
+        control_(control),
+        intervals_(control),
+        film_(settings.width, settings.height, settings.window(), settings.noise, settings.spp) {
+    if (control.resume) film_.load(*control.resume);
+  }
+
+  Exposure expose() {
+    while (film_.count() > 0) {
+      shorten_to_time();
+      const double begin = intervals_.elapsed(), drawn = film_.drawn();
+      if (!draw_round()) break;
+      film_.end_round();
+      if (film_.drawn() > drawn) seconds_per_sample_ = (intervals_.elapsed() - begin) / (film_.drawn() - drawn);
+      if (control_.progress || film_.count() == 0) estimate();
+    }
+    Exposure exposure{.image = film_.develop(),
+                      .samples = film_.sample_counts(),
+                      .stopped = film_.count() > 0,
+                      .converged = film_.converged(),
+                      .error = error_};
+    intervals_.save([&] { return state(); });
+    return exposure;
+  }
+
+ private:
   struct Portion {
     uint32_t half;
     std::vector<uint32_t> pixels;
   };
-  constexpr uint32_t kWaves = 4;  // enough that waves are full, few enough that threads end together
-  NoiseFilm film(settings.width, settings.height, settings.window(), settings.noise, settings.spp);
-  const double start = clock();
-  std::optional<ErrorEstimate> error;
-  const auto estimate = [&] {
-    if (settings.estimate_error) error = film.estimate_error(threads);
-  };
-  double seconds_per_sample = 0;  // of all pixels that are still drawn
-  double drawn = 0;               // in the round before
-  uint64_t rays = 0;
-  while (film.count() > 0) {
-    const std::vector<uint32_t> drawing[] = {film.drawing(0), film.drawing(1)};
-    const auto pixels = static_cast<double>(drawing[0].size() + drawing[1].size());
-    if (settings.seconds > 0 && drawn > 0) {
-      const double left = settings.seconds - (clock() - start);
-      const double fits = std::max(0.0, left / (seconds_per_sample * pixels));
-      if (fits < film.count()) film.shorten(static_cast<uint32_t>(0.9 * fits));
-    }
-    const uint32_t count = film.count();
-    const size_t size = std::max(1u, kWaves * settings.wave / std::max(count, 1u));
+
+  // What the round has yet to draw.
+  std::vector<Portion> portions() const {
+    constexpr uint32_t kWaves = 4;  // enough that waves are full, few enough that threads end together
+    const size_t size = std::max(1u, kWaves * settings_.wave / film_.count());
     std::vector<Portion> portions;
-    for (uint32_t half = 0; half < NoiseFilm::kHalves && count > 0; ++half) {
-      const std::vector<uint32_t>& all = drawing[half];
+    for (uint32_t half = 0; half < NoiseFilm::kHalves; ++half) {
+      const std::vector<uint32_t> all = film_.behind(half);
       for (size_t begin = 0; begin < all.size(); begin += size) {
         const auto first = all.begin() + static_cast<ptrdiff_t>(begin);
         portions.push_back({half, {first, first + static_cast<ptrdiff_t>(std::min(size, all.size() - begin))}});
       }
     }
-    const double begin = clock();
-    const uint64_t rays_before = rays;
-    run_workers(
-        threads, portions.size(),
-        [&](size_t item, uint32_t worker) {
-          const Portion& portion = portions[item];
-          return draw(portion.pixels, film.first(portion.half), count, film.sums(portion.half), worker);
-        },
-        [&](const Progress& round) {
-          rays = rays_before + round.rays;
-          const double seconds = clock() - start;
-          // The first round alone tells how many there will be.
-          const double fraction = drawn > 0 ? (film.drawn() + round.fraction * pixels * count) / film.expected() : 0;
-          if (progress) {
-            progress({std::max(fraction, settings.seconds > 0 ? seconds / settings.seconds : 0), rays, seconds,
-                      error ? error->mrse : -1});
-          }
-        });
-    drawn = pixels * count;
-    if (count > 0) seconds_per_sample = (clock() - begin) / drawn;
-    film.end_round();
-    if (progress || film.count() == 0) estimate();
+    return portions;
   }
-  return {film.develop(), film.sample_counts(), film.converged(), error};
-}
+
+  // False if the render was stopped before its end.
+  bool draw_round() {
+    if (film_.count() == 0) return true;
+    const double pixels = film_.round_pixels();
+    size_t all = 0, left = 0;
+    do {
+      const std::vector<Portion> portions = this->portions();
+      if (all == 0) all = portions.size();
+      left = portions.size();
+      std::atomic<size_t> drawn{0};
+      const uint64_t rays_before = rays_;
+      run_workers(
+          threads_, portions.size(),
+          [&](size_t item, uint32_t worker) -> uint64_t {
+            if (intervals_.pausing()) return 0;
+            const Portion& portion = portions[item];
+            const uint64_t rays =
+                draw_(portion.pixels, film_.first(portion.half), film_.count(), film_.sums(portion.half), worker);
+            film_.drew(portion.half, portion.pixels);
+            ++drawn;
+            return rays;
+          },
+          [&](const Progress& round) {
+            rays_ = rays_before + round.rays;
+            const auto behind = static_cast<double>(left - drawn);
+            report((all > 0 ? 1 - behind / static_cast<double>(all) : 1) * pixels * film_.count());
+          });
+      left -= drawn;
+      if (intervals_.save_due()) intervals_.save([&] { return state(); });
+    } while (left > 0 && !intervals_.stopped());
+    return left == 0;
+  }
+
+  void shorten_to_time() {
+    if (settings_.seconds == 0 || seconds_per_sample_ == 0) return;
+    const double left = settings_.seconds - intervals_.elapsed();
+    const double fits = std::max(0.0, left / (seconds_per_sample_ * film_.round_pixels()));
+    if (fits < film_.count()) film_.shorten(static_cast<uint32_t>(0.9 * fits));
+  }
+
+  void estimate() {
+    if (settings_.estimate_error) error_ = film_.estimate_error(threads_);
+  }
+
+  // samples: drawn in the round so far.
+  void report(double samples) const {
+    if (!control_.progress) return;
+    const double seconds = intervals_.elapsed();
+    // The first round alone tells how many there will be.
+    const double fraction = film_.drawn() > 0 ? (film_.drawn() + samples) / film_.expected() : 0;
+    control_.progress({std::max(fraction, settings_.seconds > 0 ? seconds / settings_.seconds : 0), rays_, seconds,
+                       error_ ? error_->mrse : -1});
+  }
+
+  SavedRender state() const {
+    SavedRender saved;
+    film_.save(saved);
+    return saved;
+  }
+
+  const Settings& settings_;
+  uint32_t threads_;
+  const Draw& draw_;
+  const RenderControl& control_;
+  Intervals intervals_;
+  NoiseFilm film_;
+  std::optional<ErrorEstimate> error_;
+  double seconds_per_sample_ = 0;  // of one pixel, in the last round; 0: there was none yet
+  uint64_t rays_ = 0;
+};
 
 }  // namespace
 
@@ -112,11 +235,10 @@ double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Exposure expose(const Settings& settings, uint32_t threads, const Draw& draw,
-                const std::function<void(const Progress&)>& progress, const Clock& clock) {
-  if (settings.noise > 0) return expose_to_noise(settings, threads, draw, progress, clock);
-  if (settings.adaptive_batch > 0) return expose_adaptively(settings, threads, draw, progress);
-  return expose_in_rounds(settings, threads, draw, progress, clock);
+Exposure expose(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control) {
+  if (settings.noise > 0) return ToNoise(settings, threads, draw, control).expose();
+  if (settings.adaptive_batch > 0) return Adaptive(settings, draw, control).expose(threads);
+  return expose_in_rounds(settings, threads, draw, control);
 }
 
 }  // namespace lanewise

@@ -23,6 +23,8 @@ struct CourseLobe {
   bool any() const { return masking || clamp; }
 };
 
+constexpr uint64_t kMaxSpp = uint64_t{1} << 62;
+
 // A rectangle of pixels of the whole picture; row 0 is at the top.
 struct Window {
   uint32_t x = 0, y = 0, width = 0, height = 0;
@@ -31,10 +33,11 @@ struct Window {
 struct Settings {
   uint32_t width = 480;
   uint32_t height = 360;
-  Window crop;                          // -p: the part to render, within the picture; width 0: all of it
-  uint32_t spp = 16;                    // camera samples per pixel, >= 1; the most of them with -a, --noise and --time
-  uint32_t light_samples = 1;           // per light at every vertex, >= 1
-  uint32_t max_depth = 5;               // most scattering events on a path; 0: only light seen directly
+  Window crop;                 // -p: the part to render, within the picture; width 0: all of it
+  uint64_t spp = 16;           // camera samples per pixel, in [1, kMaxSpp]; the most of them with -a, --noise, --time
+  uint64_t first_sample = 0;   // --samples: the number of a pixel's first
+  uint32_t light_samples = 1;  // per light at every vertex, >= 1
+  uint32_t max_depth = 5;      // most scattering events on a path; 0: only light seen directly
   std::optional<uint32_t> only_bounce;  // only light that has been scattered this many times, <= max_depth
   uint32_t threads = 0;                 // 0: all the machine has
   uint32_t wave = 4096;                 // paths in flight per thread, a multiple of kLanes

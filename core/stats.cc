@@ -31,7 +31,17 @@ uint32_t thread_count(const Settings& settings) {
   return settings.threads > 0 ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
 }
 
-RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles,
+RenderControl count_invalid(const RenderControl& control, std::function<uint64_t()> count) {
+  RenderControl counting = control;
+  if (!control.save) return counting;
+  counting.save = [&control, count = std::move(count)](SavedRender&& saved) {
+    saved.invalid_samples = count() + (control.resume ? control.resume->invalid_samples : 0);
+    control.save(std::move(saved));
+  };
+  return counting;
+}
+
+RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles, const SavedRender* resumed,
                          std::chrono::duration<double> elapsed) {
   Profile all;
   uint32_t threads = 0;
@@ -42,6 +52,8 @@ RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles
   RenderResult result{std::move(exposure.image), std::move(exposure.samples), make_stats(all), std::move(all), {}};
   const double drawn = std::accumulate(result.samples.begin(), result.samples.end(), 0.0);
   result.stats.samples_per_pixel = drawn / static_cast<double>(result.samples.size());
+  if (resumed) result.stats.invalid_samples += resumed->invalid_samples;
+  result.stats.stopped = exposure.stopped;
   result.stats.converged = exposure.converged;
   result.stats.error = exposure.error;
   result.stats.threads = threads;

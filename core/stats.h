@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <functional>
 
 #include "core/profile.h"
 #include "core/render.h"
@@ -13,7 +15,11 @@ namespace lanewise {
 uint32_t thread_count(const Settings& settings);
 
 // profiles: of each thread.
-RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles,
+// resumed: what the render went on with, or null.
+RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles, const SavedRender* resumed,
                          std::chrono::duration<double> elapsed);
+
+// The control, with what it saves told of the invalid samples: count() of this run, and those from before. It must outlast that.
+RenderControl count_invalid(const RenderControl& control, std::function<uint64_t()> count);
 
 }  // namespace lanewise

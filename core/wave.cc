@@ -71,8 +71,9 @@ Kernel* kernel_of(Stage stage) {
 
 void Wave::run(const Batch& batch, PixelSums* film) {
   const auto wave = profiler_.wave(batch.paths);
+  const Step start{.epoch = epoch_of(batch.first_sample)};
   state_.batch = batch;
-  state_.step = {};
+  state_.step = start;
   Range live{0, batch.paths};
   uint32_t paths = batch.paths;
   run(Stage::kGenerate, live);
@@ -99,7 +100,7 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   }
 
   // Emission ends a path at whatever bounce: one full range of them costs less than a few at each.
-  state_.step = {};
+  state_.step = start;
   const Range met = emitters_.take();
   run(Stage::kEmission, emitters_.state(), met, met.size());
   run(Stage::kRetire, emitters_.state(), met, met.size());

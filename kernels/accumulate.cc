@@ -1,5 +1,7 @@
 #include "kernels/kernels.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/accumulate.cc"
 #include "hwy/foreach_target.h"
@@ -10,38 +12,128 @@ HWY_BEFORE_NAMESPACE();
 namespace lanewise {
 namespace HWY_NAMESPACE {
 
-// Blackens samples with a NaN, infinite or negative channel, in place; returns how many.
-uint32_t BlackenInvalid(const PathState& s) {
+using DD = hn::CappedTag<double, kLanes>;
+using VD = hn::Vec<DD>;
+using VF2 = hn::Rebind<float, DD>;  // as many floats
+
+// Above this, samples are added one by one: below it, the numbers that Cut makes are below 2^50.
+constexpr float kBright = 0x1p20f;
+
+struct Seen {
+  uint32_t invalid = 0;  // samples with a NaN, infinite or negative channel
+  bool bright = false;   // one is above kBright
+};
+
+// Blackens invalid samples in place.
+Seen BlackenInvalid(const PathState& s) {
   const DF d;
   const VF largest = Splat(3.4028235e38f), zero = hn::Zero(d);
   const auto valid = [&](VF x) HWY_ATTR { return hn::And(hn::Ge(x, zero), hn::Le(x, largest)); };
-  uint32_t invalid = 0;
+  Seen seen;
+  VF brightest = zero;
   for (size_t i = 0; i < s.batch.paths; i += hn::Lanes(d)) {
-    const Vec3 L = LoadVec3(s.result_r, s.result_g, s.result_b, i);
+    Vec3 L = LoadVec3(s.result_r, s.result_g, s.result_b, i);
     const MF good = hn::And(valid(L.x), hn::And(valid(L.y), valid(L.z)));
-    if (HWY_LIKELY(hn::AllTrue(d, good))) continue;
-    // Slots past the last path hold what earlier waves left there.
-    const MF counted = hn::FirstN(d, s.batch.paths - i);
-    invalid += static_cast<uint32_t>(hn::CountTrue(d, hn::AndNot(good, counted)));
-    StoreVec3(IfThenElseZero(good, L), s.result_r, s.result_g, s.result_b, i);
+    if (HWY_UNLIKELY(!hn::AllTrue(d, good))) {
+      // Slots past the last path hold what earlier waves left there.
+      const MF counted = hn::FirstN(d, s.batch.paths - i);
+      seen.invalid += static_cast<uint32_t>(hn::CountTrue(d, hn::AndNot(good, counted)));
+      L = IfThenElseZero(good, L);
+      StoreVec3(L, s.result_r, s.result_g, s.result_b, i);
+    }
+    brightest = hn::Max(brightest, MaxElement(L));
   }
-  return invalid;
+  seen.bright = !hn::AllFalse(d, hn::Gt(brightest, Splat(kBright)));
+  return seen;
+}
+
+// Numbers of a sum's units, in two parts of 64 bits, units = high 2^48 + low. They are kept as the bits of a double that has
+// kShift added to it, which makes integers of numbers at no cost: sums of them go modulo 2^64, and lose kShiftBits for each at
+// their end.
+constexpr size_t kChunk = 64;
+constexpr int kLowPlaces = 48;
+constexpr double kShift = 0x1.8p52;
+constexpr uint64_t kShiftBits = 0x4338000000000000u;
+
+struct alignas(64) Parts {
+  uint64_t high[kChunk];
+  uint64_t low[kChunk];
+};
+
+// x: from 0 to 2^(98 - kPlaces).
+template <int kPlaces>
+HWY_INLINE void Cut(VD x, size_t i, Parts& parts) {
+  const DD d;
+  const hn::RebindToUnsigned<DD> bits;
+  const VD shift = hn::Set(d, kShift);
+  const VD scaled = hn::Mul(x, hn::Set(d, static_cast<double>(Uint128{1} << (kPlaces - kLowPlaces))));
+  const VD high = hn::Add(scaled, shift);  // rounded to an integer
+  const VD rest = hn::Sub(scaled, hn::Sub(high, shift));
+  const VD low = hn::Add(hn::Mul(rest, hn::Set(d, 0x1p48)), shift);
+  hn::Store(hn::BitCast(bits, high), bits, parts.high + i);
+  hn::Store(hn::BitCast(bits, low), bits, parts.low + i);
+}
+
+struct Chunk {
+  Parts r, g, b, y, y2;
+};
+
+// Of samples begin .. begin + kChunk - 1; those behind the last path are whatever they are.
+void Cut(const PathState& s, size_t begin, Chunk& chunk) {
+  const DD d;
+  const VF2 f;
+  for (size_t i = 0; i < kChunk && begin + i < s.batch.paths; i += hn::Lanes(d)) {
+    const auto load = [&](const float* x) HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(f, x + begin + i)); };
+    const VD r = load(s.result_r), g = load(s.result_g), b = load(s.result_b);
+    const VD weighted = hn::Add(hn::Add(hn::Mul(hn::Set(d, 0.2126), r), hn::Mul(hn::Set(d, 0.7152), g)),
+                                hn::Mul(hn::Set(d, 0.0722), b));
+    const VD y = hn::PromoteTo(d, hn::DemoteTo(f, weighted));
+    Cut<72>(r, i, chunk.r);
+    Cut<72>(g, i, chunk.g);
+    Cut<72>(b, i, chunk.b);
+    Cut<72>(y, i, chunk.y);
+    Cut<56>(hn::Mul(y, y), i, chunk.y2);
+  }
+}
+
+template <class Sum>
+HWY_INLINE void Add(const Parts& parts, size_t begin, size_t end, Sum& sum) {
+  uint64_t high = 0, low = 0;
+  for (size_t i = begin; i < end; ++i) {
+    high += parts.high[i];
+    low += parts.low[i];
+  }
+  high -= (end - begin) * kShiftBits;
+  low -= (end - begin) * kShiftBits;
+  sum += Sum((Uint128{high} << kLowPlaces) + static_cast<Uint128>(static_cast<int64_t>(low)));
 }
 
 uint32_t Accumulate(const PathState& s, PixelSums* film) {
-  const uint32_t invalid = BlackenInvalid(s);
+  const Seen seen = BlackenInvalid(s);
   const Batch& batch = s.batch;
   uint64_t pixel_index = batch.first_path / batch.samples;
-  uint32_t sample = static_cast<uint32_t>(batch.first_path % batch.samples);
-  for (uint32_t i = 0; i < batch.paths; ++pixel_index, sample = 0) {
-    PixelSums& pixel = film[batch.pixels[pixel_index]];
-    PixelSums sums = pixel;
-    for (; sample < batch.samples && i < batch.paths; ++sample, ++i) {
-      sums.add(s.result_r[i], s.result_g[i], s.result_b[i]);
+  uint32_t left = batch.samples - static_cast<uint32_t>(batch.first_path % batch.samples);  // of the pixel's samples
+  Chunk chunk;
+  for (size_t begin = 0; begin < batch.paths; begin += kChunk) {
+    const size_t size = std::min<size_t>(kChunk, batch.paths - begin);
+    if (!seen.bright) Cut(s, begin, chunk);
+    for (size_t i = 0; i < size;) {
+      PixelSums& sums = film[batch.pixels[pixel_index]];
+      const size_t end = std::min(size, i + left);
+      left -= static_cast<uint32_t>(end - i);
+      if (HWY_LIKELY(!seen.bright)) {
+        Add(chunk.r, i, end, sums.r);
+        Add(chunk.g, i, end, sums.g);
+        Add(chunk.b, i, end, sums.b);
+        Add(chunk.y, i, end, sums.y);
+        Add(chunk.y2, i, end, sums.y2);
+        i = end;
+      }
+      for (; i < end; ++i) sums.add(s.result_r[begin + i], s.result_g[begin + i], s.result_b[begin + i]);
+      if (left == 0) ++pixel_index, left = batch.samples;
     }
-    pixel = sums;
   }
-  return invalid;
+  return seen.invalid;
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -25,7 +25,7 @@ void Assign(const Plan& plan, const PathState& s, Range range) {
     const float y = static_cast<float>(pixel / plan.settings.width);
     for (; sample < batch.samples && i < range.end; ++sample, ++i) {
       s.pixel[i] = pixel;
-      s.sample[i] = batch.first_sample + sample;
+      s.sample[i] = static_cast<uint32_t>(batch.first_sample + sample);
       s.slot[i] = i;
       s.o_x[i] = x;
       s.o_y[i] = y;

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "core/path_state.h"
+#include "core/pixel_sums.h"
 #include "core/plan.h"
 #include "core/types.h"
 #include "kernels/bounds.h"
@@ -230,31 +231,8 @@ constexpr KernelFields kRouletteFields = {.reads = "pixel sample beta step", .wr
 constexpr KernelBounds kRouletteBounds = {.fields = {ulps("beta", 2.5)}};
 constexpr uint32_t kRouletteBounce = 4;
 
-// Rec. 709 luminance of linear RGB.
-constexpr double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
-
-// A pixel's sums over its samples. Luminance is summed by its distance from the first sample's, which leaves the variance of
-// bright calm pixels nothing to cancel (Chan, Golub & LeVeque, The American Statistician 37(3), 1983).
-struct PixelSums {
-  double r = 0, g = 0, b = 0;
-  double y_first = -1;     // luminance of the first sample; -1: there is none yet
-  double dy = 0, dy2 = 0;  // of luminance - y_first, and of its square
-
-  void add(double red, double green, double blue) {
-    const double y = luminance(red, green, blue);
-    if (y_first < 0) y_first = y;
-    r += red;
-    g += green;
-    b += blue;
-    dy += y - y_first;
-    dy2 += (y - y_first) * (y - y_first);
-  }
-  bool operator==(const PixelSums&) const = default;
-};
-
-// Adds the batch's samples to their pixels, film[pixel], each pixel's in the order of its samples: so the sums have the
-// same bits however samples are cut into waves. A sample with a NaN, infinite or negative channel counts as black.
-// Returns the number of such invalid samples.
+// Adds the batch's samples to their pixels, film[pixel]: the same sums as by PixelSums::add, which hang on no order. A sample with a
+// NaN, infinite or negative channel counts as black. Returns the number of such invalid samples.
 uint32_t accumulate(const PathState& s, PixelSums* film);
 constexpr KernelFields kAccumulateFields = {.reads = "batch result", .writes = ""};
 

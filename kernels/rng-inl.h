@@ -126,7 +126,7 @@ HWY_INLINE Random4 DrawRandom(Sampler sampler, VU pixel, VU sample, uint32_t set
 // A set of the paths at slot i.
 HWY_INLINE Random4 DrawSet(const Plan& plan, const PathState& s, size_t i, uint32_t set) {
   return DrawRandom(plan.settings.sampler, hn::Load(DU(), s.pixel + i), hn::Load(DU(), s.sample + i), set,
-                    plan.settings.seed);
+                    plan.settings.seed ^ s.step.epoch);
 }
 // Of their bounce.
 HWY_INLINE Random4 DrawRandom(const Plan& plan, const PathState& s, size_t i, uint32_t purpose) {

@@ -76,7 +76,7 @@ TEST_CASE("error estimate: what independent and low-discrepancy samples are off 
       CAPTURE(stratified);
       CAPTURE(spp);
       const test::MadeUpDraw draw{.stratified = stratified};
-      const Exposure got = expose(picture(spp), 2, draw, nullptr);
+      const Exposure got = expose(picture(spp), 2, draw);
       REQUIRE(got.error);
       const double truth = measured(got, draw);
       CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.2));
@@ -88,7 +88,7 @@ TEST_CASE("error estimate: what independent and low-discrepancy samples are off 
 
 TEST_CASE("error estimate: a firefly's error is known from its pixel alone, whatever the other samples' ratio") {
   const test::MadeUpDraw draw{.stratified = true, .firefly = 40 * 96 + 51};  // no probe
-  const Exposure got = expose(picture(64), 1, draw, nullptr);
+  const Exposure got = expose(picture(64), 1, draw);
   const double truth = measured(got, draw);
   CHECK(truth > 1);
   CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.1));
@@ -96,22 +96,22 @@ TEST_CASE("error estimate: a firefly's error is known from its pixel alone, what
 
 TEST_CASE("error estimate: nothing is said of one sample, of -a, or where it is not asked for") {
   const test::MadeUpDraw draw;
-  CHECK(!expose(picture(1), 1, draw, nullptr).error);
+  CHECK(!expose(picture(1), 1, draw).error);
   Settings settings = picture(64);
   settings.estimate_error = false;
-  CHECK(!expose(settings, 1, draw, nullptr).error);
+  CHECK(!expose(settings, 1, draw).error);
   settings.estimate_error = true;
   settings.adaptive_batch = 16;
-  CHECK(!expose(settings, 1, draw, nullptr).error);
+  CHECK(!expose(settings, 1, draw).error);
 }
 
 TEST_CASE("error estimate: the picture has the same bits with it, also of rounds, and the estimate with any threads") {
   const test::MadeUpDraw draw;
   Settings settings = picture(200);
-  const Exposure with = expose(settings, 2, draw, [](const Progress&) {});
-  const Exposure again = expose(settings, 1, draw, nullptr);
+  const Exposure with = expose(settings, 2, draw, {.progress = [](const Progress&) {}});
+  const Exposure again = expose(settings, 1, draw);
   settings.estimate_error = false;
-  CHECK(with.image.rgb == expose(settings, 1, draw, nullptr).image.rgb);
+  CHECK(with.image.rgb == expose(settings, 1, draw).image.rgb);
   CHECK(with.error->mrse == again.error->mrse);
   CHECK(with.error->low == again.error->low);
 }
@@ -120,7 +120,7 @@ TEST_CASE("error estimate: --noise knows it from its halves") {
   const test::MadeUpDraw draw;
   Settings settings = picture(4096);
   settings.noise = 0.1;
-  const Exposure got = expose(settings, 1, draw, nullptr);
+  const Exposure got = expose(settings, 1, draw);
   REQUIRE(got.error);
   CHECK(got.error->mrse == doctest::Approx(measured(got, draw)).epsilon(0.15));
   CHECK(got.error->mrse < 0.01);

@@ -27,12 +27,12 @@ struct MadeUpDraw {
   // Skewed, with a variance of the square of its mean; mean 1.
   static double value(double u) { return -std::log1p(-u * (1 - 1e-9)); }
 
-  uint64_t operator()(const std::vector<uint32_t>& pixels, uint32_t first, uint32_t count, PixelSums* sums,
+  uint64_t operator()(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
                       uint32_t) const {
     for (const uint32_t pixel : pixels) {
-      for (uint32_t sample = first; sample < first + count; ++sample) {
+      for (uint64_t sample = first; sample < first + count; ++sample) {
         double u = uniform((uint64_t{pixel} << 32) + (stratified ? sample >> 16 : sample) + 0x9E3779B97F4A7C15u);
-        if (stratified) u = std::fmod(u + 0.6180339887498949 * (sample & 0xffff), 1.0);
+        if (stratified) u = std::fmod(u + 0.6180339887498949 * (static_cast<double>(sample & 0xffff)), 1.0);
         const double y = pixel == firefly && sample == 5 ? 1e4 : expectation(pixel) * value(u);
         sums[pixel].add(y, y, y);
       }

@@ -21,7 +21,7 @@ Settings small() {
 }
 
 RenderResult render_test_scene(const Settings& settings, ProfileDetail detail = {}) {
-  return render(make_plan(test::test_scene(), settings), nullptr, detail);
+  return render(make_plan(test::test_scene(), settings), {}, detail);
 }
 
 // Of one call each.

@@ -67,6 +67,9 @@ TEST_CASE("render: SIMD paths are the scalar renderer's paths, in every mode") {
     check(settings, test::test_scene());
   }
   settings = small();
+  settings.first_sample = (uint64_t{1} << 32) - 5;
+  check(settings, test::test_scene());
+  settings = small();
   settings.light_samples = 3;
   check(settings, test::test_box());
   settings.light_samples = 1;
@@ -223,7 +226,7 @@ TEST_CASE("render: -a takes fewer samples where the picture is calm") {
   settings.adaptive_tolerance = 0.2;
   const RenderResult result = render(make_plan(test::test_scene(), settings));
   uint64_t total = 0;
-  for (const uint32_t n : result.samples) {
+  for (const uint64_t n : result.samples) {
     CHECK(n % 16 == 0);
     CHECK(n >= 16);
     total += n;

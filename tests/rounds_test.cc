@@ -30,7 +30,7 @@ Settings picture() {
   return settings;
 }
 
-uint32_t range(const std::vector<uint32_t>& samples) {
+uint64_t range(const std::vector<uint64_t>& samples) {
   const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
   return *most - *least;
 }
@@ -53,7 +53,7 @@ TEST_CASE("rounds: --time ends within 2%, and no pixel has two samples more than
       MadeUpTime time(10 / samples / static_cast<double>(pixels));
       Settings settings = picture();
       settings.estimate_error = estimate;
-      const Exposure got = expose(settings, 1, time.draw(), nullptr, time.clock());
+      const Exposure got = expose(settings, 1, time.draw(), {.clock = time.clock()});
       CAPTURE(samples);
       CAPTURE(estimate);
       const double taken = time.now - 1e6;
@@ -72,7 +72,7 @@ TEST_CASE("rounds: a speed that changes moves the end little") {
     const double seconds = (time.now > 1e6 + 5 ? 2.5 : 1) * time.per_sample * static_cast<double>(samples);
     time.now = time.now + seconds;
   };
-  const Exposure got = expose(picture(), 1, draw, nullptr, time.clock());
+  const Exposure got = expose(picture(), 1, draw, {.clock = time.clock()});
   CHECK(time.now - 1e6 > 9.9);
   CHECK(time.now - 1e6 < 10.3);
   CHECK(*std::min_element(got.samples.begin(), got.samples.end()) > 0);
@@ -82,19 +82,19 @@ TEST_CASE("rounds: a pixel has a sample however little time there is, and no mor
   MadeUpTime time(1);
   Settings settings = picture();
   settings.seconds = 1e-9;
-  CHECK(expose(settings, 2, time.draw(), nullptr, time.clock()).samples == std::vector<uint32_t>(160 * 128, 1));
+  CHECK(expose(settings, 2, time.draw(), {.clock = time.clock()}).samples == std::vector<uint64_t>(160 * 128, 1));
   settings.seconds = 1e9;
   settings.spp = 21;
-  CHECK(expose(settings, 1, time.draw(), nullptr, time.clock()).samples == std::vector<uint32_t>(160 * 128, 21));
+  CHECK(expose(settings, 1, time.draw(), {.clock = time.clock()}).samples == std::vector<uint64_t>(160 * 128, 21));
 }
 
 TEST_CASE("rounds: the picture of a time is that of as many samples") {
   MadeUpTime time(10 / 32.5 / (160 * 128));
   Settings settings = picture();
-  const Exposure timed = expose(settings, 1, time.draw(), nullptr, time.clock());
+  const Exposure timed = expose(settings, 1, time.draw(), {.clock = time.clock()});
   settings.seconds = 0;
   settings.spp = timed.samples.back();
-  const Exposure fixed = expose(settings, 1, time.draw(), nullptr);
+  const Exposure fixed = expose(settings, 1, time.draw());
   const size_t last = timed.image.rgb.size() - 1;
   CHECK(timed.image.rgb[last] == fixed.image.rgb[last]);
 }
@@ -110,13 +110,13 @@ TEST_CASE("rounds: progress tells the error and comes to its end") {
     fraction = p.fraction;
     last = p;
   };
-  expose(settings, 1, time.draw(), see, time.clock());
+  expose(settings, 1, time.draw(), {.progress = see, .clock = time.clock()});
   CHECK(last.fraction == doctest::Approx(1).epsilon(0.03));
   CHECK(last.seconds == doctest::Approx(10).epsilon(0.03));
   CHECK(last.mrse > 0);
   settings.seconds = 0, settings.spp = 100;
   fraction = 0;
-  expose(settings, 1, time.draw(), see, time.clock());
+  expose(settings, 1, time.draw(), {.progress = see, .clock = time.clock()});
   CHECK(last.fraction == 1);
   CHECK(last.mrse > 0);
 }
@@ -131,14 +131,14 @@ TEST_CASE("rounds: of --time and --noise the first to come ends the picture") {
     CHECK(p.fraction >= 0);
     CHECK(p.fraction < 1.03);
   };
-  const Exposure got = expose(settings, 1, time.draw(), see, time.clock());
+  const Exposure got = expose(settings, 1, time.draw(), {.progress = see, .clock = time.clock()});
   CHECK(time.now - 1e6 > 9.8);
   CHECK(time.now - 1e6 < 10.2);
   CHECK(got.converged == 0);
   CHECK(got.error);
   settings.noise = 1;
   time.now = 1e6;
-  CHECK(expose(settings, 1, time.draw(), nullptr, time.clock()).converged == 1);
+  CHECK(expose(settings, 1, time.draw(), {.clock = time.clock()}).converged == 1);
   CHECK(time.now - 1e6 < 5);
 }
 

@@ -12,6 +12,7 @@ void add_profile_command(CLI::App& app, const std::string& command_line);
 void add_plan_command(CLI::App& app, const std::string& command_line);
 void add_info_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
+void add_merge_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 

@@ -76,6 +76,24 @@ CLI::Validator duration() {
   });
 }
 
+std::optional<SampleRange> parse_sample_range(const std::string& text) {
+  SampleRange range;
+  const char* const end = text.data() + text.size();
+  const auto [colon, first_error] = std::from_chars(text.data(), end, range.begin);
+  if (first_error != std::errc() || colon == end || *colon != ':') return {};
+  const auto [rest, last_error] = std::from_chars(colon + 1, end, range.end);
+  if (last_error != std::errc() || rest != end || range.begin >= range.end || range.end > kMaxSpp) return {};
+  return range;
+}
+
+CLI::Validator sample_range() {
+  return validator([](const std::string& text) {
+    return parse_sample_range(text)
+               ? std::string()
+               : "'" + text + "' is no range of samples such as 0:64 (the first and one past the last)";
+  });
+}
+
 CLI::Validator one_of(const std::vector<std::string>& names) {
   return validator([names](const std::string& text) {
     if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();

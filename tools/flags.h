@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/film_file.h"
+
 namespace lanewise {
 
 // A whole number in [lo, hi]; step: it must also be a multiple of that.
@@ -19,6 +21,10 @@ CLI::Validator real_number(double lo, double hi);
 // A span of time: "90" (seconds), "10s", "500ms", "2m", "1h1m30s". Seconds; nothing if it is none, or not above 0.
 std::optional<double> parse_duration(const std::string& text);
 CLI::Validator duration();
+
+// "A:B" with A < B, at most kMaxSpp.
+std::optional<SampleRange> parse_sample_range(const std::string& text);
+CLI::Validator sample_range();
 
 // One of the names.
 CLI::Validator one_of(const std::vector<std::string>& names);

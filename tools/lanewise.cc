@@ -11,6 +11,7 @@
 #include "tools/commands.h"
 #include "tools/flags.h"
 #include "tools/script_command.h"
+#include "tools/stop_signals.h"
 #include "tools/version.h"
 
 namespace lanewise {
@@ -32,6 +33,7 @@ void run(int argc, char** argv) {
   add_plan_command(app, quoted_command_line(argc, argv));
   add_info_command(app);
   add_convert_command(app);
+  add_merge_command(app);
   add_compare_command(app);
   add_script_command(app, "chart", "Chart error against seconds of rendering, beside other renderers");
   add_script_command(app, "replay", "Render the pictures of the course's write-ups, and measure their claims");
@@ -73,6 +75,8 @@ int main(int argc, char** argv) {
   try {
     lanewise::run(argc, argv);
     return 0;
+  } catch (const lanewise::Stopped& stopped) {
+    lanewise::die_of(stopped.signal);
   } catch (const lanewise::UsageError& e) {
     return complain(e.what(), 2);
   } catch (const std::bad_alloc&) {

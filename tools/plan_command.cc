@@ -35,8 +35,8 @@ struct PlanOptions {
 // The scene, and what of the settings the plan hangs on, in one line.
 std::string title(const PlanOptions& o) {
   const Settings& s = o.render.settings;
-  return print("%s: %u x %u pixels, %u samples each, depth %u\n\n", o.render.scene.c_str(), s.width, s.height, s.spp,
-               s.max_depth);
+  return print("%s: %u x %u pixels, %s samples each, depth %u\n\n", o.render.scene.c_str(), s.width, s.height,
+               std::to_string(s.spp).c_str(), s.max_depth);
 }
 
 std::string plan_json(const PlanOptions& o, const std::string& command_line, const std::vector<Decision>& decisions) {

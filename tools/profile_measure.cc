@@ -31,7 +31,7 @@ struct Run {
 
 Run run_once(const Plan& plan, bool clock) {
   const double before = process_cpu_seconds();
-  Run run{render(plan, nullptr, {.clock = clock})};
+  Run run{render(plan, {}, {.clock = clock})};
   run.cpu_seconds = process_cpu_seconds() - before;
   return run;
 }
@@ -190,7 +190,7 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
 }
 
 std::vector<std::vector<LoggedCall>> log_calls(const Plan& plan, uint32_t waves) {
-  return render(plan, nullptr, {.clock = true, .logged_waves = waves}).logs;
+  return render(plan, {}, {.clock = true, .logged_waves = waves}).logs;
 }
 
 std::string cpu_name() {

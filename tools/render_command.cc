@@ -1,17 +1,22 @@
 #include <algorithm>
+#include <csignal>
+#include <cstdio>
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/explain.h"
 #include "core/file.h"
+#include "core/film_file.h"
 #include "core/image_io.h"
 #include "core/plan.h"
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/types.h"
+#include "tools/checkpoint.h"
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
 #include "tools/output_files.h"
@@ -19,6 +24,7 @@
 #include "tools/rate_picture.h"
 #include "tools/render_options.h"
 #include "tools/render_report.h"
+#include "tools/stop_signals.h"
 #include "tools/version.h"
 
 namespace lanewise {
@@ -56,19 +62,22 @@ void check_outputs(const RenderOptions& o) {
     check_writable(o.stats);
     files.add("--stats", o.stats);
   }
+  if (!o.checkpoint.empty()) {
+    check_writable(o.checkpoint);
+    files.add("--checkpoint", o.checkpoint);
+  }
 }
 
-RenderResult render_with(const RenderOptions& o, const Plan& plan,
-                         const std::function<void(const Progress&)>& progress) {
+RenderResult render_with(const RenderOptions& o, const Plan& plan, const RenderControl& control) {
   switch (o.reference) {
     case Reference::kFloat:
-      return render_reference<float>(plan, progress);
+      return render_reference<float>(plan, control);
     case Reference::kDouble:
-      return render_reference<double>(plan, progress);
+      return render_reference<double>(plan, control);
     case Reference::kNone:
       break;
   }
-  return render(plan, progress, {.clock = !o.stats.empty()});
+  return render(plan, control, {.clock = !o.stats.empty()});
 }
 
 std::string isa_name(Reference reference) {
@@ -83,15 +92,38 @@ std::string isa_name(Reference reference) {
   return chosen_isa();
 }
 
+// What to say of a render that a signal has ended.
+std::string farewell(const RenderOptions& o, const RenderStats& stats, int signal) {
+  char samples[64];
+  std::snprintf(samples, sizeof samples, "%.1f", stats.samples_per_pixel);
+  std::string text = std::string("lanewise: stopped by ") + (signal == SIGINT ? "SIGINT" : "SIGTERM") + " after " +
+                     samples + " samples per pixel; " + (o.is_part() ? "no part is written" : o.output + " shows them");
+  if (!o.checkpoint.empty()) text += "; the same command with --resume goes on";
+  return text + "\n";
+}
+
+void write_picture(const RenderOptions& o, const RenderResult& result, const std::string& command_line) {
+  write_image(o.output, result.image,
+              {{"software", std::string("lanewise ") + kVersion},
+               {"command", command_line},
+               {"scene", o.scene},
+               {"spp", samples_per_pixel(o, result.stats)},
+               {"seed", std::to_string(o.settings.seed)}});
+}
+
 void run_render(const RenderOptions& o, const std::string& command_line) {
   check_outputs(o);
   choose_isa(o.isa);
+  std::optional<Checkpoint> checkpoint;
+  if (!o.checkpoint.empty()) checkpoint.emplace(o);
 
   const auto start = std::chrono::steady_clock::now();
   RenderSeconds seconds;
   ProgressLine progress(o.quiet);
   progress.show("loading " + o.scene);
   Scene scene = timed(seconds.load, [&] { return load_chosen_scene(o); });
+  RenderIdentity identity;
+  if (o.is_part() || checkpoint) identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
   progress.show("planning");
   Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
   if (o.settings.seconds > 0) {
@@ -99,16 +131,25 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
     constexpr double kLeast = 1e-9;  // time is up: one sample a pixel
     plan.settings.seconds = std::max(kLeast, o.settings.seconds - spent.count());
   }
-  const RenderResult result =
-      timed(seconds.render, [&] { return render_with(o, plan, [&](const Progress& p) { progress.show(p); }); });
+  const StopSignals signals;
+  RenderControl control{.progress = [&](const Progress& p) { progress.show(p); },
+                        .stop = [] { return StopSignals::received() != 0; }};
+  FilmFile film;  // of a part, or for the checkpoint
+  if (checkpoint) {
+    control.resume = checkpoint->resumed(identity);
+    control.save_every = o.every;
+  }
+  if (checkpoint || o.is_part()) {
+    control.save = [&](SavedRender&& state) {
+      film = film_file(o, identity, std::move(state));
+      if (checkpoint) checkpoint->write(film);
+    };
+  }
+  const RenderResult result = timed(seconds.render, [&] { return render_with(o, plan, control); });
 
   timed(seconds.write, [&] {
-    write_image(o.output, result.image,
-                {{"software", std::string("lanewise ") + kVersion},
-                 {"command", command_line},
-                 {"scene", o.scene},
-                 {"spp", samples_per_pixel(o, result.stats)},
-                 {"seed", std::to_string(o.settings.seed)}});
+    if (!o.is_part()) write_picture(o, result, command_line);
+    if (o.is_part() && !result.stats.stopped) write_file(o.output, encode_film(film));
     return true;
   });
   if (!o.rate.empty()) {
@@ -119,6 +160,11 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   if (!o.stats.empty()) write_file(o.stats, stats_json(report));
 
   progress.clear();
+  if (checkpoint && !checkpoint->failure().empty()) throw Error(checkpoint->failure());
+  if (result.stats.stopped) {
+    std::cerr << farewell(o, result.stats, StopSignals::received());
+    throw Stopped{StopSignals::received()};
+  }
   if (result.stats.invalid_samples > 0) {
     std::cerr << "lanewise: warning: " << result.stats.invalid_samples
               << " samples were NaN, infinite or negative and count as black\n";

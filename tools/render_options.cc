@@ -5,8 +5,8 @@
 
 #include "core/dimensions.h"
 #include "core/noise_film.h"
-#include "core/probes.h"
 #include "core/types.h"
+#include "core/film_file.h"
 #include "tools/flags.h"
 
 namespace lanewise {
@@ -58,7 +58,7 @@ void add_picture_flags(CLI::App& app, RenderOptions& o) {
 
 void add_sampling_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("-s,--spp", o.settings.spp, "Camera samples per pixel")
-      ->check(whole_number(1, kMaxCount))
+      ->check(whole_number(1, kMaxSpp))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("-l,--light-samples", o.settings.light_samples, "Samples per light at every vertex")
@@ -176,6 +176,24 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
                  "Picture of the samples that each pixel took: colours in a .png, their number in the others")
       ->type_name("FILE");
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
+  app.add_option(
+         "--samples", o.samples,
+         "Only samples A to B - 1 of every pixel, from 0 on, in place of -s; the picture, an .exr, is then a film "
+         "file, with exact sums for lanewise merge")
+      ->check(sample_range())
+      ->type_name("A:B");
+  CLI::Option* checkpoint =
+      app.add_option("--checkpoint", o.checkpoint, "Keep what has been drawn in FILE, to go on from after a crash")
+          ->type_name("FILE");
+  app.add_option_function<std::string>(
+         "--every", [&o](const std::string& time) { o.every = parse_duration(time).value_or(o.every); },
+         "Time between two checkpoints, and so the most that can be lost")
+      ->check(duration())
+      ->type_name("T")
+      ->default_str("60s")
+      ->needs(checkpoint);
+  app.add_flag("--resume", o.resume, "Go on from the checkpoint, if there is one; it comes to the same bits")
+      ->needs(checkpoint);
   o.settings.estimate_error = true;
   app.add_flag_function(
       "--no-estimate", [&o](int64_t) { o.settings.estimate_error = false; },
@@ -196,9 +214,9 @@ void choose_model(RenderOptions& o, const CLI::App& app) {
   if (app.count("--connect") == 0) settings.connect = false;
 }
 
-std::string default_output(const std::string& scene) {
+std::string default_output(const std::string& scene, const char* extension) {
   const size_t colon = scene.starts_with("builtin:") ? scene.find(':') + 1 : 0;
-  return std::filesystem::path(scene.substr(colon)).stem().string() + ".png";
+  return std::filesystem::path(scene.substr(colon)).stem().string() + extension;
 }
 
 }  // namespace
@@ -265,16 +283,27 @@ void complete(RenderOptions& o, const CLI::App& app) {
   std::tie(o.settings.adaptive_batch, o.settings.adaptive_tolerance) = o.adaptive;
   if (o.settings.noise > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--noise contradicts --adaptive (-a)");
-    if (app.count("--spp") == 0) o.settings.spp = o.settings.seconds > 0 ? NoiseFilm::kMaxSamples : kNoiseSpp;
+    if (app.count("--spp") == 0) o.settings.spp = o.settings.seconds > 0 ? kMaxSpp : kNoiseSpp;
     if (o.settings.spp < 2 * NoiseFilm::kFirstSamples) {
       throw UsageError("--noise: needs --spp (-s) of at least " + std::to_string(2 * NoiseFilm::kFirstSamples));
     }
   }
+  if (o.is_part()) {
+    for (const char* flag : {"--spp", "--adaptive", "--noise", "--time"}) {
+      if (app.count(flag) > 0) throw UsageError(std::string("--samples contradicts ") + flag);
+    }
+    const SampleRange range = *parse_sample_range(o.samples);
+    o.settings.first_sample = range.begin;
+    o.settings.spp = range.end - range.begin;
+    o.settings.estimate_error = false;
+  }
   if (o.settings.seconds > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--time contradicts --adaptive (-a)");
-    if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = Probes::kMostSamples;
+    if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = kMaxSpp;
   }
-  if (o.output.empty()) o.output = default_output(o.scene);
+  if (o.output.empty()) o.output = default_output(o.scene, o.is_part() ? ".exr" : ".png");
+  if (o.is_part() && !o.output.ends_with(".exr"))
+    throw UsageError("--samples: " + o.output + ": needs an .exr to write");
 }
 
 }  // namespace lanewise

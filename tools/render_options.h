@@ -24,8 +24,11 @@ struct RenderOptions {
   std::string camera_file;  // empty: the scene's camera
   std::string environment;  // the map around the scene; empty: none
   std::string stats;        // the statistics' file; empty: none
-  std::string rate;         // the file of the picture of sample counts; empty: none
-  Settings settings;        // settings.seconds: as given, from the program's start
+  std::string checkpoint;   // what it can be resumed from; empty: none
+  double every = 60;        // seconds between two checkpoints
+  bool resume = false;
+  std::string rate;   // the file of the picture of sample counts; empty: none
+  Settings settings;  // settings.seconds: as given, from the program's start
   Normals normals = Normals::kFile;
   std::string isa;  // empty: the best here
   Reference reference = Reference::kNone;
@@ -34,11 +37,15 @@ struct RenderOptions {
   std::optional<double> ior;
   bool quiet = false;
 
+  // --samples: the picture is then a film file.
+  bool is_part() const { return !samples.empty(); }
+
   // As the parser needs them; complete() moves them into the settings.
   std::pair<uint32_t, uint32_t> resolution{settings.width, settings.height};
   std::array<uint32_t, 4> crop{};
   std::pair<uint32_t, double> adaptive{settings.adaptive_batch, settings.adaptive_tolerance};
   bool hemisphere = false;
+  std::string samples;  // A:B
   Model model = Model::kExact;
 };
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/probes.h"
 #include "tools/plan_report.h"
 #include "tools/text.h"
 #include "tools/version.h"
@@ -100,7 +99,7 @@ std::string summary(const RenderReport& r) {
   text += std::to_string(settings.window().width) + " x " + std::to_string(settings.window().height) + ", ";
   const bool adaptive = settings.adaptive_batch > 0 || settings.noise > 0;
   // Without -s, --time has no limit worth telling.
-  const bool limited = settings.seconds == 0 || settings.spp < Probes::kMostSamples;
+  const bool limited = settings.seconds == 0 || settings.spp < kMaxSpp;
   if (adaptive || settings.seconds > 0)
     text += samples_per_pixel(r.options, s) + (limited ? " of at most " : " samples");
   if (limited) text += count_of(settings.spp, "sample");

@@ -71,7 +71,7 @@ Random4<T> draw_random(Sampler sampler, uint32_t pixel, uint32_t sample, uint32_
 
 template <class T>
 Random4<T> draw_set(const Plan& plan, const Path<T>& p, uint32_t set) {
-  return draw_random<T>(plan.settings.sampler, p.pixel, p.sample, set, plan.settings.seed);
+  return draw_random<T>(plan.settings.sampler, p.pixel, p.sample, set, plan.settings.seed ^ p.step.epoch);
 }
 
 template <class T>

@@ -50,7 +50,7 @@ TEST_CASE("stability: the variance of bright calm pixels does not cancel") {
   test::Curve curve{.name = "variance",
                     .title = "The variance of bright calm pixels cancels in a sum of squares",
                     .naive = "sum of squares, float",
-                    .ours = "sums around the first sample",
+                    .ours = "exact sums",
                     .x_axis = "mean / standard deviation of the samples",
                     .y_axis = "error of the variance (relative)"};
   double worst_double = 0;

@@ -1,0 +1,265 @@
+#include "core/film_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "core/film.h"
+#include "core/fnv.h"
+#include "core/types.h"
+
+namespace lanewise {
+namespace {
+
+constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
+constexpr uint64_t kMostShrunk = 2048;  // times that zlib makes anything smaller, and then some
+constexpr const char* kFormat = "lanewise film 1";
+constexpr const char* kPrefix = "lanewise.";
+
+// In arrays of its own area: those of the whole picture would be larger.
+Film film_of(const FilmFile& file, const std::string& name) {
+  SavedRender at_origin = file.state;
+  at_origin.area.x = at_origin.area.y = 0;
+  Film film(size_t{at_origin.area.width} * at_origin.area.height);
+  at_origin.get_film(name, at_origin.area.width, film);
+  return film;
+}
+
+std::string checksum(const SavedRender& state) {
+  Fnv fnv;
+  for (const SavedRender::Channel& c : state.channels) {
+    fnv.add(std::string_view(c.name));
+    fnv.add(c.words);
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv.hash()));
+  return text;
+}
+
+std::string to_text(const std::vector<SampleRange>& ranges) {
+  std::string text;
+  for (const SampleRange& r : ranges) text += std::to_string(r.begin) + ":" + std::to_string(r.end) + " ";
+  return text;
+}
+
+std::vector<SampleRange> ranges_of(const std::string& text) {
+  std::vector<SampleRange> ranges;
+  std::istringstream in(text);
+  SampleRange r;
+  for (char colon = 0; in >> r.begin >> colon >> r.end;) {
+    if (colon != ':' || r.begin >= r.end || (!ranges.empty() && r.begin <= ranges.back().end)) throw Error("damaged");
+    ranges.push_back(r);
+  }
+  return ranges;
+}
+
+uint64_t samples_in(const std::vector<SampleRange>& ranges) {
+  uint64_t samples = 0;
+  for (const SampleRange& r : ranges) samples += r.end - r.begin;
+  return samples;
+}
+
+Imf::Slice slice(Imf::PixelType type, const void* first, size_t stride, const Window& area) {
+  const int64_t offset = static_cast<int64_t>(stride) * (area.x + int64_t{area.y} * area.width);
+  const auto base = reinterpret_cast<intptr_t>(first) - offset;
+  return {type, reinterpret_cast<char*>(base), stride, stride * area.width};
+}
+
+std::string attribute(const Imf::Header& header, const std::string& name) {
+  const auto* found = header.findTypedAttribute<Imf::StringAttribute>((kPrefix + name).c_str());
+  if (!found) throw Error("no film file of Lanewise");
+  return found->value();
+}
+
+uint64_t number(const std::string& text) {
+  if (text.empty() || text.size() > 19 || text.find_first_not_of("0123456789") != std::string::npos)
+    throw Error("damaged");
+  return std::stoull(text);
+}
+
+FilmFile read(const std::string& path) {
+  Imf::InputFile file(path.c_str());
+  const Imf::Header& header = file.header();
+  if (attribute(header, "format") != kFormat) throw Error("of another version of Lanewise");
+  FilmFile film;
+  const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
+  const int64_t width = int64_t{data.max.x} - data.min.x + 1, height = int64_t{data.max.y} - data.min.y + 1;
+  const int64_t all_x = int64_t{display.max.x} + 1, all_y = int64_t{display.max.y} + 1;
+  if (display.min.x != 0 || display.min.y != 0 || width <= 0 || height <= 0 || data.min.x < 0 || data.min.y < 0 ||
+      data.max.x >= all_x || data.max.y >= all_y ||
+      static_cast<uint64_t>(all_x) > kMaxPixels / static_cast<uint64_t>(all_y)) {
+    throw Error("absurd size");
+  }
+  film.width = static_cast<uint32_t>(all_x);
+  film.height = static_cast<uint32_t>(all_y);
+  film.state.area = {static_cast<uint32_t>(data.min.x), static_cast<uint32_t>(data.min.y), static_cast<uint32_t>(width),
+                     static_cast<uint32_t>(height)};
+  film.scene = attribute(header, "scene-file");
+  film.ranges = ranges_of(attribute(header, "samples"));
+  film.state.seconds = std::stod(attribute(header, "seconds"));
+  film.state.invalid_samples = number(attribute(header, "invalid-samples"));
+  std::istringstream names(attribute(header, "identity"));
+  for (std::string name; names >> name;) film.identity.emplace_back(name, attribute(header, "is." + name));
+  std::istringstream numbers(attribute(header, "numbers"));
+  for (std::string name, value; numbers >> name >> value;) film.state.numbers[name] = number(value);
+
+  const uint64_t pixels = static_cast<uint64_t>(width * height);
+  Imf::FrameBuffer frame;
+  uint64_t words = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) words += c.channel().type == Imf::UINT;
+  if (pixels * words * sizeof(uint32_t) / kMostShrunk > std::filesystem::file_size(path)) throw Error("absurd size");
+  film.state.channels.reserve(words);
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    if (c.channel().type != Imf::UINT || c.channel().xSampling != 1 || c.channel().ySampling != 1) continue;
+    film.state.channels.push_back({c.name(), std::vector<uint32_t>(pixels)});
+    frame.insert(c.name(),
+                 slice(Imf::UINT, film.state.channels.back().words.data(), sizeof(uint32_t), film.state.area));
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(data.min.y, data.max.y);
+  if (checksum(film.state) != attribute(header, "checksum")) throw Error("damaged (its checksum is wrong)");
+  return film;
+}
+
+// The samples of each pixel of a finished film are as many as its ranges have.
+void check_finished(const FilmFile& film) {
+  if (film.ranges.empty()) throw Error("it is a checkpoint of a render that is not done");
+  const uint64_t samples = samples_in(film.ranges);
+  film.state.get<uint64_t>("picture.samples", film.width, [&](size_t, uint64_t n) {
+    if (n != samples) throw Error("damaged (samples are missing)");
+  });
+}
+
+void add_ranges(std::vector<SampleRange>& ranges, const std::vector<SampleRange>& others) {
+  for (const SampleRange& other : others) {
+    for (const SampleRange& r : ranges) {
+      if (other.begin < r.end && r.begin < other.end) {
+        throw Error("samples " + std::to_string(std::max(other.begin, r.begin)) + ":" +
+                    std::to_string(std::min(other.end, r.end)) + " are there already");
+      }
+    }
+  }
+  ranges.insert(ranges.end(), others.begin(), others.end());
+  std::ranges::sort(ranges, {}, &SampleRange::begin);
+  std::vector<SampleRange> joined;
+  for (const SampleRange& r : ranges) {
+    if (!joined.empty() && joined.back().end == r.begin) {
+      joined.back().end = r.end;
+    } else {
+      joined.push_back(r);
+    }
+  }
+  ranges = joined;
+}
+
+}  // namespace
+
+std::string encode_film(const FilmFile& film) {
+  const Window& area = film.state.area;
+  const Imath::Box2i all({0, 0}, {static_cast<int>(film.width) - 1, static_cast<int>(film.height) - 1});
+  const Imath::V2i corner(static_cast<int>(area.x), static_cast<int>(area.y));
+  const Imath::Box2i data(corner,
+                          corner + Imath::V2i(static_cast<int>(area.width) - 1, static_cast<int>(area.height) - 1));
+  Imf::Header header(all, data);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 1;
+  const auto set = [&header](const std::string& name, const std::string& value) {
+    header.insert((kPrefix + name).c_str(), Imf::StringAttribute(value));
+  };
+  set("format", kFormat);
+  set("scene-file", film.scene);
+  set("samples", to_text(film.ranges));
+  set("seconds", std::to_string(film.state.seconds));
+  set("invalid-samples", std::to_string(film.state.invalid_samples));
+  std::string names, numbers;
+  for (const auto& [name, value] : film.identity) {
+    names += name + " ";
+    set("is." + name, value);
+  }
+  set("identity", names);
+  for (const auto& [name, value] : film.state.numbers) numbers += name + " " + std::to_string(value) + " ";
+  set("numbers", numbers);
+
+  // OpenEXR keeps channels in the order of their names, and so does the checksum.
+  SavedRender sorted = film.state;
+  std::ranges::sort(sorted.channels, {}, &SavedRender::Channel::name);
+  set("checksum", checksum(sorted));
+  const Image image = develop(film);
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < 3; ++c) {
+    const char name[] = {"RGB"[c], 0};
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    frame.insert(name, slice(Imf::FLOAT, image.rgb.data() + c, 3 * sizeof(float), area));
+  }
+  for (const SavedRender::Channel& c : sorted.channels) {
+    header.channels().insert(c.name, Imf::Channel(Imf::UINT));
+    frame.insert(c.name, slice(Imf::UINT, c.words.data(), sizeof(uint32_t), area));
+  }
+  Imf::StdOSStream stream;
+  {
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(frame);
+    file.writePixels(static_cast<int>(area.height));
+  }
+  return stream.str();
+}
+
+FilmFile read_film(const std::string& path, bool finished) {
+  try {
+    if (std::filesystem::is_directory(path)) throw Error("Is a directory");
+    FilmFile film = read(path);
+    if (finished) {
+      check_finished(film);
+      std::erase_if(film.state.channels, [](const SavedRender::Channel& c) { return !c.name.starts_with("picture."); });
+    }
+    return film;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    std::string what = e.what();
+    throw Error(path + ": cannot read the film: " + what.substr(0, what.find('\n')));
+  }
+}
+
+void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) {
+  try {
+    if (const std::string d = difference(film.identity, other.identity); !d.empty()) throw Error(d);
+    add_ranges(film.ranges, other.ranges);
+    Film sum = film_of(film, "picture");
+    const Film more = film_of(other, "picture");
+    for (size_t i = 0; i < sum.sums.size(); ++i) {
+      sum.sums[i] += more.sums[i];
+      sum.samples[i] += more.samples[i];
+    }
+    SavedRender merged;
+    merged.area = {0, 0, film.state.area.width, film.state.area.height};
+    merged.put_film("picture", merged.area.width, sum);
+    merged.area = film.state.area;
+    merged.seconds = film.state.seconds + other.state.seconds;
+    merged.invalid_samples = film.state.invalid_samples + other.state.invalid_samples;
+    film.state = std::move(merged);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(path + ": cannot merge: " + e.what());
+  }
+}
+
+Image develop(const FilmFile& film) {
+  const Window all{0, 0, film.state.area.width, film.state.area.height};
+  // The two halves of --noise are not brought together: a look at the first must do while it is not done.
+  const bool halves = std::ranges::none_of(
+      film.state.channels, [](const SavedRender::Channel& c) { return c.name.starts_with("picture."); });
+  return develop(film_of(film, halves ? "half0" : "picture"), all.width, all);
+}
+
+}  // namespace lanewise

@@ -1,0 +1,62 @@
+// What goes on around a render while it draws: progress, an end before its time, and saving what there is.
+#pragma once
+
+#include <functional>
+
+#include "core/saved_render.h"
+
+namespace lanewise {
+
+struct Progress {
+  double fraction = 0;  // of the work that is known of, or of the time that --time gives it, in [0, 1]
+  uint64_t rays = 0;
+  double seconds = 0;
+  double mrse = -1;  // estimated error of the picture so far; -1: not known yet
+};
+
+// Seconds since some moment, to be called from any thread.
+using Clock = std::function<double()>;
+double steady_seconds();
+
+struct RenderControl {
+  std::function<void(const Progress&)> progress = nullptr;  // some ten times a second, from the thread that renders
+  Clock clock = steady_seconds;
+  std::function<bool()> stop = nullptr;  // from any thread, often; once true: draws no more than it has begun
+  const SavedRender* resume = nullptr;   // what to go on with; must outlast the render
+  std::function<void(SavedRender&&)> save = nullptr;  // from the thread that renders: while it draws, and at its end
+  double save_every = 0;                              // seconds between two saves; 0: only at the end
+};
+
+// When a render draws, and when it pauses to be saved.
+class Intervals {
+ public:
+  explicit Intervals(const RenderControl& control)
+      : control_(control),
+        start_(control.clock() - (control.resume ? control.resume->seconds : 0)),
+        saved_(control.clock()) {}
+
+  double elapsed() const { return control_.clock() - start_; }  // of drawing, with what was before a resume
+  bool stopped() const { return control_.stop && control_.stop(); }
+  bool save_due() const {
+    return control_.save && control_.save_every > 0 && control_.clock() - saved_ >= control_.save_every;
+  }
+  // From any thread: that no further work is to begin, for now or for good.
+  bool pausing() const { return stopped() || save_due(); }
+
+  // state(): a SavedRender. Between two pieces of work.
+  template <class F>
+  void save(const F& state) {
+    if (!control_.save) return;
+    SavedRender saved = state();
+    saved.seconds = elapsed();
+    control_.save(std::move(saved));
+    saved_ = control_.clock();
+  }
+
+ private:
+  const RenderControl& control_;
+  double start_;
+  double saved_;
+};
+
+}  // namespace lanewise
