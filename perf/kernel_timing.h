@@ -18,7 +18,7 @@ constexpr uint32_t kPaths = 4096;  // of a wave: all samples of a picture of kSi
 constexpr uint32_t kSide = 16, kSamples = 16;
 
 using Paths = std::vector<Path<float>>;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 // A kernel to measure: on an instruction set, and its scalar twin.
 struct Subject {
@@ -38,8 +38,8 @@ PathBuffer buffer_of(const Paths& paths);
 // Ends the program: the kernel did not do what it must, on the chosen instruction set.
 [[noreturn]] void fail(const std::string& kernel, const std::string& what);
 
-inline double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+inline double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
 // Counts only what run() takes.
@@ -47,7 +47,7 @@ template <class Restore, class Run>
 void time_rounds(benchmark::State& state, const Restore& restore, const Run& run) {
   for (auto _ : state) {
     restore();
-    const auto start = Clock::now();
+    const auto start = SteadyClock::now();
     run();
     benchmark::ClobberMemory();
     state.SetIterationTime(seconds_since(start));
