@@ -1,3 +1,5 @@
+#include "core/isa.h"
+
 #include <string>
 #include <vector>
 
@@ -20,19 +22,24 @@ constexpr Isa kIsas[] = {
 };
 
 // Worst first.
-std::vector<Isa> supported() {
+std::vector<Isa> among(int64_t targets) {
   std::vector<Isa> result;
-  const int64_t here = (hwy::SupportedTargets() | HWY_SCALAR | HWY_EMU128) & HWY_TARGETS;
   for (const Isa& isa : kIsas) {
-    if (isa.targets & here) result.push_back({isa.name, isa.targets & here});
+    if (isa.targets & targets) result.push_back({isa.name, isa.targets & targets});
   }
   return result;
 }
 
 // What hwy finds before anything is chosen; the choice overrides its memory of the machine.
 const std::vector<Isa>& machine() {
-  static const std::vector<Isa> isas = supported();
+  static const std::vector<Isa> isas = among((hwy::SupportedTargets() | HWY_SCALAR | HWY_EMU128) & HWY_TARGETS);
   return isas;
+}
+
+std::vector<std::string> names_of(const std::vector<Isa>& isas) {
+  std::vector<std::string> names;
+  for (const Isa& isa : isas) names.push_back(isa.name);
+  return names;
 }
 
 std::string& chosen() {
@@ -42,11 +49,9 @@ std::string& chosen() {
 
 }  // namespace
 
-std::vector<std::string> supported_isas() {
-  std::vector<std::string> names;
-  for (const Isa& isa : machine()) names.push_back(isa.name);
-  return names;
-}
+std::vector<std::string> compiled_isas() { return names_of(among(HWY_TARGETS)); }
+
+std::vector<std::string> supported_isas() { return names_of(machine()); }
 
 std::string chosen_isa() { return chosen(); }
 

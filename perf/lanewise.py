@@ -61,7 +61,7 @@ def write_pfm(path, picture):
 
 def program_version():
     said = subprocess.run([PROGRAM, '--version'], capture_output=True, text=True, check=True).stdout
-    return said.strip().removeprefix('lanewise ')
+    return said.splitlines()[0].removeprefix('lanewise ')
 
 
 def version():

@@ -12,7 +12,7 @@
 #include "tools/flags.h"
 #include "tools/script_command.h"
 #include "tools/stop_signals.h"
-#include "tools/version.h"
+#include "tools/version_report.h"
 
 namespace lanewise {
 namespace {
@@ -25,7 +25,8 @@ void run(int argc, char** argv) {
   CLI::App app("Lanewise, a wavefront path tracer for the CPU", "lanewise");
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Print this help");
-  app.set_version_flag("-V,--version", std::string("lanewise ") + kVersion, "Print the version");
+  app.set_version_flag("-V,--version", version_report,
+                       "Print the version, how it was built, instruction sets and libraries");
   app.require_subcommand(0, 1);
   app.footer("lanewise COMMAND --help tells more.");
   add_render_command(app, quoted_command_line(argc, argv));

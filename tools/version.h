@@ -2,6 +2,6 @@
 
 namespace lanewise {
 
-inline constexpr char kVersion[] = "0.1.0";  // the project's, as in CMakeLists.txt
+inline constexpr char kVersion[] = LANEWISE_VERSION;  // the project's, from CMakeLists.txt
 
 }  // namespace lanewise
