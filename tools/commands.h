@@ -15,5 +15,6 @@ void add_convert_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
+void add_generate_command(CLI::App& app);  // of the man page and completions, from what the others have added
 
 }  // namespace lanewise

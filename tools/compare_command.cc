@@ -110,11 +110,15 @@ void add_compare_command(CLI::App& app) {
       "over exposures, for .png and with flip-ldr that of colours as displayed, radiance clipped to [0, 1].");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("A", options->a, "Picture: .png, .exr, .pfm or .hdr")->required()->type_name("");
-  command->add_option("B", options->b, "The reference, of the same size")->required()->type_name("");
+  command->add_option("B", options->b, "The reference, of the same size: .png, .exr, .pfm or .hdr")
+      ->required()
+      ->type_name("");
   add_choice<Metric>(*command, "--metric", options->metric,
                      {{"mse", Metric::kMse}, {"flip", Metric::kFlip}, {"flip-ldr", Metric::kFlipLdr}},
                      "Compute FLIP too");
-  command->add_option("--map", options->map, "Write FLIP's error of every pixel: magma colours (.png), floats")
+  command
+      ->add_option("--map", options->map,
+                   "Write FLIP's error of every pixel: magma colours in a .png, floats in an .exr, .pfm or .hdr")
       ->type_name("FILE");
   command->add_option("--ppd", options->pixels_per_degree, "Pixels per degree of the viewer of FLIP")
       ->check(real_number(5, 1000))

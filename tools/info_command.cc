@@ -7,6 +7,7 @@
 #include "tools/commands.h"
 #include "tools/info_report.h"
 #include "tools/progress.h"
+#include "tools/render_options.h"
 
 namespace lanewise {
 namespace {
@@ -30,7 +31,7 @@ void add_info_command(CLI::App& app) {
   command->group("Commands");
   command->footer(kFooter);
   const auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "A scene, as for lanewise render")->required()->type_name("");
+  command->add_option("SCENE", options->scene, kSceneFiles)->required()->type_name("");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] {
     ProgressLine progress(false);

@@ -39,6 +39,7 @@ void run(int argc, char** argv) {
   add_script_command(app, "chart", "Chart error against seconds of rendering, beside other renderers");
   add_script_command(app, "replay", "Render the pictures of the course's write-ups, and measure their claims");
   add_verify_command(app);
+  add_generate_command(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {
     throw UsageError("'" + std::string(argv[1]) + "' is not a command; see lanewise --help");

@@ -161,6 +161,7 @@ void add_profile_command(CLI::App& app, const std::string& command_line) {
   command->footer(kFooter);
   const auto options = std::make_shared<ProfileOptions>();
   add_scene_options(*command, options->render);
+  command->get_option("SCENE")->description(std::string(kSceneFiles) + "; or a profile (.json)");
   add_profile_flags(*command, *options);
   command->callback([=] {
     complete(options->render, *command);

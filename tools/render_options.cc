@@ -172,8 +172,9 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("-f,--output", o.output, "The picture: .png, .exr, .pfm or .hdr")
       ->type_name("FILE")
       ->default_str("the scene's name.png, here");
-  app.add_option("--rate", o.rate,
-                 "Picture of the samples that each pixel took: colours in a .png, their number in the others")
+  app.add_option(
+         "--rate", o.rate,
+         "Picture of the samples that each pixel took: colours in a .png, their number in an .exr, .pfm or .hdr")
       ->type_name("FILE");
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
   app.add_option(
@@ -223,10 +224,7 @@ std::string default_output(const std::string& scene, const char* extension) {
 
 void add_scene_options(CLI::App& app, RenderOptions& o) {
   app.option_defaults()->take_last();  // so that a flag can be appended to a command line to change it
-  app.add_option("SCENE", o.scene,
-                 "COLLADA, OBJ, PLY or glTF file (.dae .obj .ply .gltf .glb), or a scene made by code: builtin:dense")
-      ->required()
-      ->type_name("");
+  app.add_option("SCENE", o.scene, kSceneFiles)->required()->type_name("");
   const auto group = [&app](const char* name) { app.option_defaults()->group(name); };
   group("Picture");
   add_picture_flags(app, o);

@@ -17,6 +17,10 @@ enum class Reference { kNone, kFloat, kDouble };  // the scalar path tracer in p
 
 enum class Model { kExact, kCourse, kCourseMasking, kCourseClamp };  // all of the course program's departures, or one
 
+// What a command that reads a scene says of it.
+inline constexpr char kSceneFiles[] =
+    "COLLADA, OBJ, PLY or glTF file (.dae .obj .ply .gltf .glb), or a scene made by code: builtin:dense";
+
 struct RenderOptions {
   std::string scene;
   std::string output;       // the picture's file; complete() fills it in
