@@ -33,7 +33,8 @@ def positive(word):
 def need(*modules):
     for module in modules:
         if not importlib.util.find_spec(module):
-            sys.exit(f'lanewise: {module} is not installed; tools/setup charts installs it')
+            package = 'pil' if module == 'PIL' else module
+            sys.exit(f'lanewise: {module} is not installed: apt install python3-{package}')
 
 
 def run(main):

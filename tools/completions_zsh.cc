@@ -63,9 +63,9 @@ std::string spec_of(const Flag& flag) {
     const char* value = flag.value_count == 0 ? "" : name.starts_with("--") ? "=" : "+";
     names += (names.empty() ? "" : ",") + name + value;
   }
-  const bool many = flag.names.size() > 1;
-  return in_quotes(many ? "(" + join(flag.names, " ") + ")" : "") + (many ? "{" + names + "}" : names) +
-         in_quotes("[" + escaped(flag.description, "[]\\:") + "]" + values_of(flag));
+  const std::string rest = "[" + escaped(flag.description, "[]\\:") + "]" + values_of(flag);
+  if (flag.names.size() == 1) return in_quotes(names + rest);
+  return in_quotes("(" + join(flag.names, " ") + ")") + "{" + names + "}" + in_quotes(rest);
 }
 
 std::string arguments_of(const Command& command) {

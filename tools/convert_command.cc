@@ -25,8 +25,8 @@ constexpr const char* kFooter =
     "with the same flags shows, and -m and -s are written too; what says how this program renders is not.\n"
     "Mitsuba shows the same picture but for noise; what pbrt has otherwise is told as a note.\n\n"
     "Examples:\n"
-    "  lanewise convert box.dae -f box.xml --view fit           for mitsuba box.xml\n"
-    "  lanewise convert box.gltf -f box.pbrt -r 1920 1080 -s 64 for pbrt box.pbrt";
+    "  lanewise convert box.dae -f box.xml --view fit            for mitsuba box.xml\n"
+    "  lanewise convert box.gltf -f box.pbrt -r 1920 1080 -s 64  for pbrt box.pbrt";
 
 struct ConvertOptions {
   RenderOptions render;

@@ -198,13 +198,13 @@ std::string section(const Command& program, const Command& command) {
   }
   for (const Flag& argument : command.arguments) text += entry(argument);
   for (const std::string& group : groups_of(own)) {
-    if (group != "Options") text += ".PP\n" + escaped(group) + ":\n";
+    if (group != "Options") text += ".PP\n" + bold(group) + "\n";
     for (const Flag* flag : own) {
       if (flag->group == group) text += entry(*flag);
     }
   }
   if (model != nullptr) {
-    text += ".PP\nAs of " + bold("lanewise " + model->name) + ":\n" + join(shared, ", ") + ".\n";
+    text += ".PP\nAs for " + bold("lanewise " + model->name) + ":\n" + join(shared, ", ") + ".\n";
   }
   return text;
 }
@@ -219,8 +219,7 @@ std::string man_page(const Command& program) {
   for (const Command& command : program.commands) {
     text += (text.ends_with("SYNOPSIS\n") ? "" : ".br\n") + synopsis(command) + "\n";
   }
-  text += ".SH DESCRIPTION\n" + escaped(title) +
-          ". Flags may stand before or after a command\\(aqs arguments; of two equal ones the last holds.\n" +
+  text += ".SH DESCRIPTION\n" + escaped(title) + ". Flags may stand before or after a command\\(aqs arguments.\n" +
           ".SH OPTIONS\n";
   for (const Flag& flag : program.flags) text += entry(flag);
   text += ".SH COMMANDS\n";

@@ -26,11 +26,10 @@ fs::path own_path() {
   return path;
 }
 
-// In the checkout that this was built from, or installed beside the program.
+// In share/lanewise beside the program's folder, where it is installed, or within it, which in a build is the checkout.
 fs::path find_script(const fs::path& program, const std::string& name) {
-  const std::string script = "perf/" + name + ".py";
-  const fs::path places[] = {fs::path(LANEWISE_SOURCE_DIR) / script,
-                             program.parent_path().parent_path() / "share/lanewise" / script};
+  const fs::path script = "share/lanewise/perf/" + name + ".py";
+  const fs::path folder = program.parent_path(), places[] = {folder.parent_path() / script, folder / script};
   for (const fs::path& path : places) {
     if (fs::exists(path)) return path;
   }
@@ -41,10 +40,12 @@ void run_script(const std::string& name, const std::vector<std::string>& argumen
   const fs::path program = own_path();
   const std::string script = find_script(program, name).string();
   if (::access(kPython, X_OK) != 0) {
-    throw Error(std::string(kPython) + ": is not there; tools/setup charts installs what lanewise " + name + " needs");
+    throw Error(std::string(kPython) + ": is not there; lanewise " + name +
+                " needs Debian's python3-matplotlib, python3-numpy and python3-pil");
   }
   ::setenv("LANEWISE_BINARY", program.c_str(), 1);  // the program that is measured is this one
-  std::vector<char*> argv = {const_cast<char*>(kPython), const_cast<char*>(script.c_str())};
+  // -B: no compiled files beside the scripts, which no package would know of.
+  std::vector<char*> argv = {const_cast<char*>(kPython), const_cast<char*>("-B"), const_cast<char*>(script.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   std::cout.flush();

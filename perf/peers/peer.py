@@ -63,7 +63,8 @@ def start_peers(labels):
     for name, label in labels.items():
         python = lanewise.ROOT / 'build-peers' / VENVS[name.split()[0]] / 'bin' / 'python'
         if not python.exists():
-            print(f'{label}: left out, it is not installed; perf/peers/setup --all installs it')
+            checkout = '' if (lanewise.ROOT / 'perf/peers/setup').exists() else ' in a checkout of Lanewise, which runs it'
+            print(f'{label}: left out, it is not installed; perf/peers/setup --all installs it{checkout}')
             continue
         try:
             peers[name] = Peer(name, python)
