@@ -65,10 +65,13 @@ def program_version():
 
 
 def version():
-    """Of the program, with the commit of the sources around it."""
+    """Of the program, with the commit of the sources around it, where they and git are there."""
     git = ['git', '-C', ROOT, 'rev-parse', '--short', 'HEAD']
-    commit = subprocess.run(git, capture_output=True, text=True, check=False)
-    return program_version() + (f' ({commit.stdout.strip()})' if commit.returncode == 0 else '')
+    try:
+        commit = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return program_version()
+    return f'{program_version()} ({commit})'
 
 
 def processor():

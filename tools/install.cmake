@@ -80,10 +80,10 @@ set(CPACK_PACKAGE_CONTACT ${LANEWISE_AUTHORS})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "wavefront path tracer for the CPU")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "Lanewise renders COLLADA, glTF, OBJ and PLY scenes with diffuse, mirror,
- glass and metal surfaces under lights and skies, without bias. Paths pass,
- thousands at a time, through small SIMD kernels, compiled for several
- instruction sets, of which the program takes the best of the machine it
- runs on: AVX-512, AVX2, SSE4, or none beyond those of any x86-64.")
+glass and metal surfaces under lights and skies, without bias. Paths pass,
+thousands at a time, through small SIMD kernels, compiled for several
+instruction sets, of which the program takes the best of the machine it
+runs on: AVX-512, AVX2, SSE4, or none beyond those of any x86-64.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
