@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -92,6 +93,11 @@ TEST_CASE("install: the program, scenes, scripts, pages and licences, and nothin
     CHECK(rendered.exit_code == 0);
     CHECK(rendered.out.empty());
     CHECK(rendered.err.empty());
+    // With its textures: it is what it is in the checkout.
+    const auto told = [&](const fs::path& scenes) {
+      return test::run_process(installed, {"info", entry.path().filename().string(), "--json"}, scenes).out;
+    };
+    CHECK(told(entry.path().parent_path()) == told(test::environment("LANEWISE_SOURCE_DIR", ".") + "/scenes"));
   }
 }
 
@@ -108,6 +114,7 @@ TEST_CASE("install: chart and replay are the scripts that are installed beside t
     const ProcessResult imported = test::run_process(kPython, {"-B", "-c", script, perf.string()}, folder.path());
     CAPTURE(imported.err);
     CHECK(imported.exit_code == 0);
+    ::unsetenv("PYTHONDONTWRITEBYTECODE");
     for (const char* command : {"chart", "replay"}) {
       const ProcessResult help = test::run_process(installed, {command, "--help"}, folder.path());
       CHECK(help.exit_code == 0);
