@@ -32,25 +32,39 @@ Arguments render(const Arguments& more, const std::string& output = "box.pfm") {
   return all;
 }
 
-// Starts the program, sends it the signal after a while, and waits for its end: 128 + the signal that ended it, or its exit code.
-int interrupt(const TemporaryFolder& folder, const Arguments& arguments, int signal, std::chrono::milliseconds after) {
-  std::vector<char*> argv = {const_cast<char*>("lanewise")};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  const std::string program = test::program(), err = folder.file("err");
-  const pid_t child = ::fork();
-  if (child == 0) {
+// The program at work, with its standard error in the file err.
+class Running {
+ public:
+  Running(const TemporaryFolder& folder, const Arguments& arguments) : folder_(folder) {
+    std::vector<char*> argv = {const_cast<char*>("lanewise")};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    const std::string program = test::program(), err = folder.file("err");
+    child_ = ::fork();
+    if (child_ != 0) return;
     if (!std::freopen(err.c_str(), "w", stderr) || ::chdir(folder.path().c_str()) != 0) ::_exit(127);
     ::alarm(60);
     ::execv(program.c_str(), argv.data());
     ::_exit(127);
   }
-  std::this_thread::sleep_for(after);
-  ::kill(child, signal);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
+
+  void wait_for(const std::string& file) const {
+    for (int i = 0; i < 6000 && !std::filesystem::exists(folder_.file(file)); ++i) sleep(std::chrono::milliseconds(5));
+  }
+  static void sleep(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
+
+  // Sends it the signal: 128 + the one that ended it, or its exit code.
+  int end(int signal) {
+    ::kill(child_, signal);
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+ private:
+  const TemporaryFolder& folder_;
+  pid_t child_;
+};
 
 const Arguments kLong = {"-s", "1000000000", "--checkpoint", "c.exr", "--every", "100ms"};
 
@@ -60,7 +74,7 @@ TEST_CASE("checkpoint command: killed at any moment, the render goes on and ends
   if (test::nothing_to_test()) return;
   std::mt19937 rng(std::random_device{}());
   const std::vector<Arguments> modes = {
-      {"-s", "3000"}, {"-s", "4000", "-a", "64", "0.02"}, {"-s", "4096", "--noise", "0.01"}};
+      {"-s", "1200"}, {"-s", "2000", "-a", "64", "0.02"}, {"-s", "1024", "--noise", "0.02"}};
   for (const Arguments& mode : modes) {
     CAPTURE(mode.back());
     const TemporaryFolder folder;
@@ -69,7 +83,9 @@ TEST_CASE("checkpoint command: killed at any moment, the render goes on and ends
     Arguments arguments = render(mode);
     arguments.insert(arguments.end(), {"--checkpoint", "c.exr", "--every", "20ms", "--resume"});
     for (int kills = 0; kills < 4; ++kills) {
-      const int ended = interrupt(folder, arguments, SIGKILL, std::chrono::milliseconds(rng() % 600));
+      Running running(folder, arguments);
+      Running::sleep(std::chrono::milliseconds(rng() % 300));
+      const int ended = running.end(SIGKILL);
       CHECK((ended == 128 + SIGKILL || ended == 0));
     }
     const ProcessResult last = lanewise(folder, arguments);
@@ -83,7 +99,9 @@ TEST_CASE("checkpoint command: SIGINT and SIGTERM leave picture and checkpoint, 
   if (test::nothing_to_test()) return;
   for (const int signal : {SIGINT, SIGTERM}) {
     const TemporaryFolder folder;
-    CHECK(interrupt(folder, render(kLong), signal, std::chrono::milliseconds(700)) == 128 + signal);
+    Running running(folder, render(kLong));
+    running.wait_for("c.exr");
+    CHECK(running.end(signal) == 128 + signal);
     CHECK(std::filesystem::exists(folder.file("box.pfm")));
     CHECK(std::filesystem::exists(folder.file("c.exr")));
     CHECK_FALSE(std::filesystem::exists(folder.file("c.exr.lock")));
@@ -121,10 +139,10 @@ TEST_CASE("checkpoint command: what would lose or mix up renders is refused") {
 
   // Another process that has it.
   std::filesystem::remove(folder.file("c.exr"));
-  std::thread first([&] { interrupt(folder, render(kLong), SIGTERM, std::chrono::milliseconds(1500)); });
-  while (!std::filesystem::exists(folder.file("c.exr"))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  Running first(folder, render(kLong));
+  first.wait_for("c.exr");
   refuses(render({"-s", "8", "--checkpoint", "c.exr", "--resume"}), "another render is writing it");
-  first.join();
+  CHECK(first.end(SIGTERM) == 128 + SIGTERM);
 }
 
 TEST_CASE(

@@ -141,7 +141,7 @@ TEST_CASE("generate command: bash completes values, files by their endings, and 
   CHECK(completed(folder, "lanewise render C.OBJ ''").empty());
   CHECK(completed(folder, "lanewise render -s ''").empty());
   CHECK(completed(folder, "lanewise render -r 640 ''").empty());
-  CHECK(completed(folder, "lanewise render --sam") == Names{"--sampler"});
+  CHECK(completed(folder, "lanewise render --see") == Names{"--seed"});
   CHECK(completed(folder, "lanewise render --metal br") == Names{"brass"});
   CHECK(completed(folder, "lanewise render C.OBJ -f ''") == Names{"d.exr", "f.png", "sub"});
   CHECK(completed(folder, "lanewise render -e ''") == Names{"d.exr", "sub"});

@@ -70,10 +70,12 @@ void add_merge_command(CLI::App& app) {
   const auto options = std::make_shared<MergeOptions>();
   command
       ->add_option("PART", options->parts,
-                   "Film files: what `lanewise render --samples`, --checkpoint and this command write")
+                   "Film files (.exr): what `lanewise render --samples`, --checkpoint and this command write")
       ->required()
       ->type_name("");
-  command->add_option("-f,--output", options->output, "The picture; an .exr is a film file again")
+  command
+      ->add_option("-f,--output", options->output,
+                   "The picture: .png, .exr, .pfm or .hdr; an .exr is a film file again")
       ->required()
       ->type_name("FILE");
   command->add_flag("-q,--quiet", options->quiet, "No summary");

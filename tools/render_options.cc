@@ -184,7 +184,8 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
       ->check(sample_range())
       ->type_name("A:B");
   CLI::Option* checkpoint =
-      app.add_option("--checkpoint", o.checkpoint, "Keep what has been drawn in FILE, to go on from after a crash")
+      app.add_option("--checkpoint", o.checkpoint,
+                     "Keep what has been drawn, to go on from after a crash, in a film file (.exr)")
           ->type_name("FILE");
   app.add_option_function<std::string>(
          "--every", [&o](const std::string& time) { o.every = parse_duration(time).value_or(o.every); },
