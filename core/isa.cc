@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/render.h"
+#include "core/types.h"
 #include "hwy/highway.h"
 
 namespace lanewise {

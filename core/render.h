@@ -57,11 +57,4 @@ RenderResult render(const Plan& plan, const RenderControl& control = {}, Profile
 template <class T>
 RenderResult render_reference(const Plan& plan, const RenderControl& control = {});
 
-// Instruction sets: "scalar", "sse4", "avx2", "avx512"; those compiled in that this machine can run, best last.
-std::vector<std::string> supported_isas();
-// Chooses one for all kernels from now on; "" means the best. Throws UsageError for a name that is unknown or not
-// supported here. Process-wide: call before threads start.
-void choose_isa(const std::string& name);
-std::string chosen_isa();
-
 }  // namespace lanewise

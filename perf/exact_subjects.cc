@@ -1,6 +1,7 @@
 #include <string>
 
 #include "core/render.h"
+#include "core/isa.h"
 #include "kernels/kernels.h"
 #include "kernels/reference/intersect.h"
 #include "perf/kernel_timing.h"

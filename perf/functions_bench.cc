@@ -18,6 +18,7 @@
 #include "core/types.h"
 #include "core/verify/float_range.h"
 #include "core/verify/ulp.h"
+#include "core/isa.h"
 #include "perf/studied_functions.h"
 
 namespace lanewise {

@@ -6,6 +6,7 @@
 
 #include "core/render.h"
 #include "core/verify/test_scene.h"
+#include "core/isa.h"
 #include "perf/recorded_paths.h"
 
 namespace lanewise {

@@ -14,6 +14,7 @@
 #include "core/render.h"
 #include "core/verify/kernel_case.h"
 #include "core/verify/oracle.h"
+#include "core/isa.h"
 #include "perf/kernel_timing.h"
 #include "perf/recorded_paths.h"
 

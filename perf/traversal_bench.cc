@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/render.h"
+#include "core/isa.h"
 #include "kernels/kernels.h"
 #include "perf/embree_scene.h"
 #include "perf/ray_sets.h"

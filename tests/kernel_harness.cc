@@ -9,6 +9,7 @@
 #include "core/render.h"
 #include "core/verify/oracle.h"
 #include "core/verify/test_scene.h"
+#include "core/isa.h"
 
 namespace lanewise::test {
 namespace {

@@ -10,6 +10,7 @@
 #include "core/types.h"
 #include "core/verify/function_study.h"
 #include "core/verify/ulp.h"
+#include "core/isa.h"
 #include "kernels/functions.h"
 #include "tests/kernel_harness.h"
 

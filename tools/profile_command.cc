@@ -11,6 +11,7 @@
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/types.h"
+#include "core/isa.h"
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
 #include "tools/flags.h"

@@ -10,6 +10,7 @@
 #include "core/render.h"
 #include "core/stage_fields.h"
 #include "core/stats.h"
+#include "core/isa.h"
 #include "tools/text.h"
 
 namespace lanewise {

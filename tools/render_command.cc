@@ -16,6 +16,7 @@
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/types.h"
+#include "core/isa.h"
 #include "tools/checkpoint.h"
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
@@ -142,6 +143,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   if (checkpoint || o.is_part()) {
     control.save = [&](SavedRender&& state) {
       film = film_file(o, identity, std::move(state));
+      progress.clear();  // for a warning to have its line
       if (checkpoint) checkpoint->write(film);
     };
   }

@@ -9,6 +9,7 @@
 #include "core/types.h"
 #include "core/verify/function_study.h"
 #include "core/verify/verify.h"
+#include "core/isa.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
 #include "tools/progress.h"

@@ -9,6 +9,7 @@
 #include "core/verify/float_range.h"
 #include "core/verify/ulp.h"
 #include "core/workers.h"
+#include "core/isa.h"
 
 namespace lanewise::verify {
 namespace {

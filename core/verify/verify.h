@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/render.h"
+#include "core/isa.h"
+#include "core/render_control.h"
 #include "core/verify/oracle.h"
 
 namespace lanewise::verify {

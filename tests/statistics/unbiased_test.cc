@@ -14,6 +14,7 @@
 #include "tests/scene_paths.h"
 #include "tests/statistics/renders.h"
 #include "core/verify/test_scene.h"
+#include "core/isa.h"
 
 TEST_SUITE_BEGIN("statistics");
 
