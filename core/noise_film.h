@@ -25,7 +25,6 @@ class NoiseFilm {
  public:
   static constexpr uint32_t kHalves = 2;
   static constexpr uint32_t kFirstSamples = 16;    // of each half before anything is decided
-  static constexpr uint32_t kLongestRound = 4096;  // so that a portion is done in a second or so
   static constexpr uint32_t kBlock = 8;            // side of a block in pixels, on a grid from the picture's corner
   static constexpr double kLeastLuminance = 0.01;  // added to means, so that black blocks end: as in the measure MRSE
 

@@ -7,6 +7,7 @@
 
 #include "core/error_estimate.h"
 #include "core/film.h"
+#include "core/pieces.h"
 #include "core/probes.h"
 #include "core/tile.h"
 #include "core/workers.h"
@@ -84,39 +85,23 @@ class Rounds {
   // Brings every pixel to that many samples. False if time was up, or the render was stopped, before that. The first sample is
   // drawn whatever the time.
   bool draw_tiles(uint64_t samples) {
-    const double count = static_cast<double>(samples - done_);
-    size_t all = 0, left = 0;
-    do {
-      const std::vector<Tile> tiles = tiles_behind(samples);
-      if (all == 0) all = tiles.size();
-      left = tiles.size();
-      std::atomic<size_t> drawn{0};
-      const uint64_t rays_before = rays_;
-      run_workers(
-          threads_, tiles.size(),
-          [&](size_t item, uint32_t worker) -> uint64_t {
-            const std::vector<uint32_t>& pixels = tiles[item].pixels;
-            const uint64_t first = film_.samples[pixels[0]];
-            if (first > 0 && timed() && drawing_time_left() <= 0) return 0;
-            if (intervals_.pausing()) return 0;
-            if (first == 0) {
-              for (const uint32_t pixel : pixels) film_.sums[pixel] = {};
-            }
-            const uint64_t rays = draw_(pixels, settings_.first_sample + first, static_cast<uint32_t>(samples - first),
-                                        film_.sums.data(), worker);
-            for (const uint32_t pixel : pixels) film_.samples[pixel] = samples;
-            ++drawn;
-            return rays;
-          },
-          [&](const Progress& round) {
-            rays_ = rays_before + round.rays;
-            const auto behind = static_cast<double>(left - drawn);
-            report(static_cast<double>(done_) + (all > 0 ? 1 - behind / static_cast<double>(all) : 1) * count);
-          });
-      left -= drawn;
-      if (intervals_.save_due()) intervals_.save([&] { return state(); });
-    } while (left > 0 && !intervals_.stopped() && !(timed() && done_ > 0 && drawing_time_left() <= 0));
-    return left == 0;
+    const auto count = static_cast<double>(samples - done_);
+    const auto time_is_up = [&] { return timed() && drawing_time_left() <= 0; };
+    return draw_pieces(
+        threads_, intervals_, rays_, [&] { return tiles_behind(samples); },
+        [&](const Tile& tile, uint32_t worker, uint64_t& rays) {
+          const uint64_t first = film_.samples[tile.pixels[0]];
+          if (first > 0 && time_is_up()) return false;
+          if (first == 0) {
+            for (const uint32_t pixel : tile.pixels) film_.sums[pixel] = {};
+          }
+          rays += draw_(tile.pixels, settings_.first_sample + first, static_cast<uint32_t>(samples - first),
+                        film_.sums.data(), worker);
+          for (const uint32_t pixel : tile.pixels) film_.samples[pixel] = samples;
+          return true;
+        },
+        [&](double share) { report(static_cast<double>(done_) + share * count); }, [&] { return state(); },
+        [&] { return done_ > 0 && time_is_up(); });
   }
 
   // Brings them to the samples that the picture has.

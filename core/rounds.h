@@ -5,9 +5,6 @@
 
 namespace lanewise {
 
-// A round draws no more samples of a pixel than this: so a tile is done in a second or so, and the render can stop.
-constexpr uint32_t kLongestRound = 4096;
-
 // Where time is given: how many samples of each pixel the next round draws, of `most` in all. done: so far, of each pixel;
 // fits: how many more there is time for, at the rate of the last round. Doubles, as sequences of low discrepancy have it, and
 // leaves a tenth of the time to set the rate right by; the last, single sample is for the clock to cut.

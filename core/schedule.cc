@@ -1,16 +1,15 @@
 #include "core/schedule.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <iterator>
 #include <optional>
 
 #include "core/film.h"
 #include "core/noise_film.h"
+#include "core/pieces.h"
 #include "core/rounds.h"
 #include "core/tile.h"
-#include "core/workers.h"
 
 namespace lanewise {
 namespace {
@@ -28,54 +27,52 @@ class Adaptive {
   }
 
   Exposure expose(uint32_t threads) {
-    const std::vector<Tile> tiles = make_tiles(settings_, settings_.adaptive_batch);
-    std::vector<uint8_t> finished(tiles.size());
     uint64_t rays = 0;
-    do {
-      const uint64_t rays_before = rays;
-      run_workers(
-          threads, tiles.size(),
-          [&](size_t item, uint32_t worker) -> uint64_t {
-            uint64_t tile_rays = 0;
-            if (!finished[item]) finished[item] = draw_tile(tiles[item], worker, tile_rays);
-            return tile_rays;
-          },
-          [&](const Progress& pass) {
-            rays = rays_before + pass.rays;
-            if (control_.progress) control_.progress({pass.fraction, rays, intervals_.elapsed()});
-          });
-      if (intervals_.save_due()) intervals_.save([&] { return state(); });
-    } while (!all_of(finished) && !intervals_.stopped());
+    const bool finished = draw_pieces(
+        threads, intervals_, rays, [&] { return tiles_left(); },
+        [&](const Tile& tile, uint32_t worker, uint64_t& tile_rays) { return draw_tile(tile, worker, tile_rays); },
+        [&](double share) {
+          if (control_.progress) control_.progress({share, rays, intervals_.elapsed()});
+        },
+        [&] { return state(); }, [] { return false; });
 
     const Window window = settings_.window();
-    size_t noisy = 0;
+    const std::vector<Tile> tiles = make_tiles(settings_, settings_.adaptive_batch);
+    size_t noisy = 0, all = 0;
     for (const Tile& tile : tiles) {
       noisy += std::ranges::count_if(tile.pixels, [&](uint32_t pixel) { return !converged(pixel); });
+      all += tile.pixels.size();
     }
     Exposure exposure{.image = develop(film_, settings_.width, window),
                       .samples = sample_counts(film_, settings_.width, window),
-                      .stopped = !all_of(finished),
-                      .converged = 1 - static_cast<double>(noisy) / (double{1} * window.width * window.height),
+                      .stopped = !finished,
+                      .converged = 1 - static_cast<double>(noisy) / static_cast<double>(all),
                       .error = {}};
     intervals_.save([&] { return state(); });
     return exposure;
   }
 
  private:
-  static bool all_of(const std::vector<uint8_t>& flags) {
-    return std::ranges::all_of(flags, [](uint8_t flag) { return flag != 0; });
-  }
-
   bool converged(uint32_t pixel) const {
     const uint64_t samples = film_.samples[pixel];
     return samples > 0 && has_converged(film_.sums[pixel], samples, settings_.adaptive_tolerance);
+  }
+
+  bool finished(uint32_t pixel) const { return film_.samples[pixel] >= settings_.spp || converged(pixel); }
+
+  std::vector<Tile> tiles_left() const {
+    std::vector<Tile> tiles = make_tiles(settings_, settings_.adaptive_batch);
+    std::erase_if(tiles, [&](const Tile& tile) {
+      return std::ranges::all_of(tile.pixels, [&](uint32_t pixel) { return finished(pixel); });
+    });
+    return tiles;
   }
 
   // A batch, or less at the end, to those that are furthest behind, until none is left. False if it was not to go on.
   bool draw_tile(const Tile& tile, uint32_t worker, uint64_t& rays) {
     std::vector<uint32_t> left = tile.pixels, pixels;  // not finished; to be drawn now
     for (;;) {
-      std::erase_if(left, [&](uint32_t pixel) { return film_.samples[pixel] >= settings_.spp || converged(pixel); });
+      std::erase_if(left, [&](uint32_t pixel) { return finished(pixel); });
       if (left.empty()) return true;
       if (intervals_.pausing()) return false;
       uint64_t done = settings_.spp;
@@ -161,34 +158,15 @@ class ToNoise {
   // False if the render was stopped before its end.
   bool draw_round() {
     if (film_.count() == 0) return true;
-    const double pixels = film_.round_pixels();
-    size_t all = 0, left = 0;
-    do {
-      const std::vector<Portion> portions = this->portions();
-      if (all == 0) all = portions.size();
-      left = portions.size();
-      std::atomic<size_t> drawn{0};
-      const uint64_t rays_before = rays_;
-      run_workers(
-          threads_, portions.size(),
-          [&](size_t item, uint32_t worker) -> uint64_t {
-            if (intervals_.pausing()) return 0;
-            const Portion& portion = portions[item];
-            const uint64_t rays =
-                draw_(portion.pixels, film_.first(portion.half), film_.count(), film_.sums(portion.half), worker);
-            film_.drew(portion.half, portion.pixels);
-            ++drawn;
-            return rays;
-          },
-          [&](const Progress& round) {
-            rays_ = rays_before + round.rays;
-            const auto behind = static_cast<double>(left - drawn);
-            report((all > 0 ? 1 - behind / static_cast<double>(all) : 1) * pixels * film_.count());
-          });
-      left -= drawn;
-      if (intervals_.save_due()) intervals_.save([&] { return state(); });
-    } while (left > 0 && !intervals_.stopped());
-    return left == 0;
+    const double samples = film_.round_pixels() * film_.count();
+    return draw_pieces(
+        threads_, intervals_, rays_, [&] { return portions(); },
+        [&](const Portion& portion, uint32_t worker, uint64_t& rays) {
+          rays += draw_(portion.pixels, film_.first(portion.half), film_.count(), film_.sums(portion.half), worker);
+          film_.drew(portion.half, portion.pixels);
+          return true;
+        },
+        [&](double share) { report(share * samples); }, [&] { return state(); }, [] { return false; });
   }
 
   void shorten_to_time() {

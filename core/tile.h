@@ -9,6 +9,9 @@
 
 namespace lanewise {
 
+// No more samples of a pixel are drawn at a time than this: so a tile is done in a second or so, and the render can stop.
+constexpr uint32_t kLongestRound = 4096;
+
 struct Tile {
   std::vector<uint32_t> pixels;  // y * width + x
 };

@@ -99,6 +99,23 @@ TEST_CASE("rounds: the picture of a time is that of as many samples") {
   CHECK(timed.image.rgb[last] == fixed.image.rgb[last]);
 }
 
+TEST_CASE("rounds: --time, resumed, is for what is left of it") {
+  Settings settings = picture();
+  MadeUpTime time(10 / 100.0 / (160 * 128));
+  SavedRender state;
+  const Exposure first = expose(settings, 1, time.draw(),
+                                {.clock = time.clock(),
+                                 .stop = [&] { return time.now >= 1e6 + 4; },
+                                 .save = [&](SavedRender&& saved) { state = std::move(saved); }});
+  CHECK(first.stopped);
+  CHECK(state.seconds == doctest::Approx(4).epsilon(0.05));
+  time.now = 2e6;
+  const Exposure rest = expose(settings, 1, time.draw(), {.clock = time.clock(), .resume = &state});
+  CHECK_FALSE(rest.stopped);
+  CHECK(time.now - 2e6 == doctest::Approx(6).epsilon(0.05));
+  CHECK(rest.samples.front() > first.samples.front());
+}
+
 TEST_CASE("rounds: progress tells the error and comes to its end") {
   MadeUpTime time(10 / 100.0 / (160 * 128));
   Settings settings = picture();
