@@ -137,8 +137,7 @@ FileLock::FileLock(const std::string& path) : lock_(target_of(path).string() + "
       fail(lock_, error);
     }
     // Whoever had it may have removed the name just now: then the lock is on a file that nobody else will find.
-    struct stat by_name {
-    }, locked{};
+    struct stat by_name, locked;
     if (::stat(lock_.c_str(), &by_name) == 0 && ::fstat(fd_, &locked) == 0 && by_name.st_ino == locked.st_ino) return;
     ::close(fd_);
   }

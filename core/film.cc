@@ -60,8 +60,8 @@ double luminance_variance(const PixelSums& sums, uint64_t samples) {
     const T y = sums.y.as<T>();
     return sums.y2.as<T>() - y * y / static_cast<T>(samples);
   };
-  constexpr long double kCalm =
-      0x1p-12L;  // of the squares' sum: below, a long double has fewer digits left than a double
+  // Of the squares' sum: below, a long double has fewer digits left than a double.
+  constexpr long double kCalm = 0x1p-12L;
   const long double quick = squares_around_mean(0.0L);
   const bool calm = quick < kCalm * sums.y2.as<long double>();
   const auto squares = static_cast<double>(calm ? squares_around_mean(__float128{}) : quick);

@@ -9,10 +9,11 @@
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
 #include <filesystem>
 #include <sstream>
 
+#include "core/exr_slice.h"
 #include "core/film.h"
 #include "core/fnv.h"
 #include "core/types.h"
@@ -25,24 +26,23 @@ constexpr uint64_t kMostShrunk = 2048;  // times that zlib makes anything smalle
 constexpr const char* kFormat = "lanewise film 1";
 constexpr const char* kPrefix = "lanewise.";
 
-// In arrays of its own area: those of the whole picture would be larger.
-Film film_of(const FilmFile& file, const std::string& name) {
-  SavedRender at_origin = file.state;
-  at_origin.area.x = at_origin.area.y = 0;
-  Film film(size_t{at_origin.area.width} * at_origin.area.height);
-  at_origin.get_film(name, at_origin.area.width, film);
-  return film;
+using Channels = std::vector<const SavedRender::Channel*>;
+
+// By their names, as OpenEXR keeps them.
+Channels sorted_channels(const SavedRender& state) {
+  Channels channels;
+  for (const SavedRender::Channel& c : state.channels) channels.push_back(&c);
+  std::ranges::sort(channels, {}, &SavedRender::Channel::name);
+  return channels;
 }
 
-std::string checksum(const SavedRender& state) {
+std::string checksum(const Channels& channels) {
   Fnv fnv;
-  for (const SavedRender::Channel& c : state.channels) {
-    fnv.add(std::string_view(c.name));
-    fnv.add(c.words);
+  for (const SavedRender::Channel* c : channels) {
+    fnv.add(std::string_view(c->name));
+    fnv.add(c->words);
   }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv.hash()));
-  return text;
+  return fnv.hex();
 }
 
 std::string to_text(const std::vector<SampleRange>& ranges) {
@@ -69,9 +69,7 @@ uint64_t samples_in(const std::vector<SampleRange>& ranges) {
 }
 
 Imf::Slice slice(Imf::PixelType type, const void* first, size_t stride, const Window& area) {
-  const int64_t offset = static_cast<int64_t>(stride) * (area.x + int64_t{area.y} * area.width);
-  const auto base = reinterpret_cast<intptr_t>(first) - offset;
-  return {type, reinterpret_cast<char*>(base), stride, stride * area.width};
+  return exr_slice(type, first, stride, area.x, area.y, area.width);
 }
 
 std::string attribute(const Imf::Header& header, const std::string& name) {
@@ -84,6 +82,13 @@ uint64_t number(const std::string& text) {
   if (text.empty() || text.size() > 19 || text.find_first_not_of("0123456789") != std::string::npos)
     throw Error("damaged");
   return std::stoull(text);
+}
+
+double seconds(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0)) throw Error("damaged");
+  return value;
 }
 
 FilmFile read(const std::string& path) {
@@ -105,7 +110,7 @@ FilmFile read(const std::string& path) {
                      static_cast<uint32_t>(height)};
   film.scene = attribute(header, "scene-file");
   film.ranges = ranges_of(attribute(header, "samples"));
-  film.state.seconds = std::stod(attribute(header, "seconds"));
+  film.state.seconds = seconds(attribute(header, "seconds"));
   film.state.invalid_samples = number(attribute(header, "invalid-samples"));
   std::istringstream names(attribute(header, "identity"));
   for (std::string name; names >> name;) film.identity.emplace_back(name, attribute(header, "is." + name));
@@ -126,7 +131,8 @@ FilmFile read(const std::string& path) {
   }
   file.setFrameBuffer(frame);
   file.readPixels(data.min.y, data.max.y);
-  if (checksum(film.state) != attribute(header, "checksum")) throw Error("damaged (its checksum is wrong)");
+  if (checksum(sorted_channels(film.state)) != attribute(header, "checksum"))
+    throw Error("damaged (its checksum is wrong)");
   return film;
 }
 
@@ -189,10 +195,8 @@ std::string encode_film(const FilmFile& film) {
   for (const auto& [name, value] : film.state.numbers) numbers += name + " " + std::to_string(value) + " ";
   set("numbers", numbers);
 
-  // OpenEXR keeps channels in the order of their names, and so does the checksum.
-  SavedRender sorted = film.state;
-  std::ranges::sort(sorted.channels, {}, &SavedRender::Channel::name);
-  set("checksum", checksum(sorted));
+  const Channels channels = sorted_channels(film.state);
+  set("checksum", checksum(channels));
   const Image image = develop(film);
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < 3; ++c) {
@@ -200,9 +204,9 @@ std::string encode_film(const FilmFile& film) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     frame.insert(name, slice(Imf::FLOAT, image.rgb.data() + c, 3 * sizeof(float), area));
   }
-  for (const SavedRender::Channel& c : sorted.channels) {
-    header.channels().insert(c.name, Imf::Channel(Imf::UINT));
-    frame.insert(c.name, slice(Imf::UINT, c.words.data(), sizeof(uint32_t), area));
+  for (const SavedRender::Channel* c : channels) {
+    header.channels().insert(c->name, Imf::Channel(Imf::UINT));
+    frame.insert(c->name, slice(Imf::UINT, c->words.data(), sizeof(uint32_t), area));
   }
   Imf::StdOSStream stream;
   {
@@ -234,16 +238,15 @@ void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) 
   try {
     if (const std::string d = difference(film.identity, other.identity); !d.empty()) throw Error(d);
     add_ranges(film.ranges, other.ranges);
-    Film sum = film_of(film, "picture");
-    const Film more = film_of(other, "picture");
+    Film sum = film.state.own_film("picture");
+    const Film more = other.state.own_film("picture");
     for (size_t i = 0; i < sum.sums.size(); ++i) {
       sum.sums[i] += more.sums[i];
       sum.samples[i] += more.samples[i];
     }
     SavedRender merged;
-    merged.area = {0, 0, film.state.area.width, film.state.area.height};
-    merged.put_film("picture", merged.area.width, sum);
     merged.area = film.state.area;
+    merged.put_own_film("picture", sum);
     merged.seconds = film.state.seconds + other.state.seconds;
     merged.invalid_samples = film.state.invalid_samples + other.state.invalid_samples;
     film.state = std::move(merged);
@@ -257,9 +260,7 @@ void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) 
 Image develop(const FilmFile& film) {
   const Window all{0, 0, film.state.area.width, film.state.area.height};
   // The two halves of --noise are not brought together: a look at the first must do while it is not done.
-  const bool halves = std::ranges::none_of(
-      film.state.channels, [](const SavedRender::Channel& c) { return c.name.starts_with("picture."); });
-  return develop(film_of(film, halves ? "half0" : "picture"), all.width, all);
+  return develop(film.state.own_film(film.state.has_film("picture") ? "picture" : "half0"), all.width, all);
 }
 
 }  // namespace lanewise

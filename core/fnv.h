@@ -1,7 +1,9 @@
-// FNV-1a by words of 64 bits: tells what has changed, not who changed it.
+// A hash like FNV-1a, by words of 64 bits; as a product carries bits upwards alone, the high ones are brought down at each step.
+// It tells what has changed, not who changed it.
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -33,7 +35,11 @@ class Fnv {
       }
     }
   }
-  uint64_t hash() const { return hash_; }
+  std::string hex() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
+    return text;
+  }
 
  private:
   uint64_t hash_ = 0xcbf29ce484222325u;

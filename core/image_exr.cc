@@ -8,6 +8,7 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
+#include "core/exr_slice.h"
 #include "core/types.h"
 
 namespace lanewise {
@@ -15,13 +16,8 @@ namespace {
 
 constexpr const char* kChannels[] = {"R", "G", "B"};
 
-// Where OpenEXR finds channel c of the pixel (x, y) of its data window: base + x stride + y stride.
-Imf::Slice slice(float* rgb, size_t c, int64_t min_x, int64_t min_y, size_t width) {
-  const size_t x_stride = 3 * sizeof(float), y_stride = x_stride * width;
-  const int64_t first = min_x * static_cast<int64_t>(x_stride) + min_y * static_cast<int64_t>(y_stride);
-  // As integers: the base of a window that does not begin at 0 lies outside the array, where no pointer may point.
-  const auto base = reinterpret_cast<intptr_t>(rgb + c) - first;
-  return {Imf::FLOAT, reinterpret_cast<char*>(base), x_stride, y_stride};
+Imf::Slice slice(const Image& image, size_t c, int64_t x, int64_t y) {
+  return exr_slice(Imf::FLOAT, image.rgb.data() + c, 3 * sizeof(float), x, y, image.width);
 }
 
 }  // namespace
@@ -33,7 +29,7 @@ std::string encode_exr(const Image& image, const std::vector<std::pair<std::stri
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < 3; ++c) {
     header.channels().insert(kChannels[c], Imf::Channel(Imf::FLOAT));
-    frame.insert(kChannels[c], slice(const_cast<float*>(image.rgb.data()), c, 0, 0, image.width));
+    frame.insert(kChannels[c], slice(image, c, 0, 0));
   }
   // Through memory: OpenEXR writes its table of lines in a destructor, where a full disk would pass unnoticed.
   Imf::StdOSStream stream;
@@ -60,7 +56,7 @@ Image read_exr(const std::string& path, uint64_t max_pixels) {
   Image image(static_cast<uint32_t>(width), static_cast<uint32_t>(height));
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < (grey ? 1 : 3); ++c) {
-    frame.insert(grey ? "Y" : kChannels[c], slice(image.rgb.data(), c, window.min.x, window.min.y, image.width));
+    frame.insert(grey ? "Y" : kChannels[c], slice(image, c, window.min.x, window.min.y));
   }
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);

@@ -92,6 +92,8 @@ Image read_any(const std::string& path) {
 
 bool holds_colours(const std::string& path) { return format_of(path) == Format::kPng; }
 
+bool is_exr(const std::string& path) { return format_of(path) == Format::kExr; }
+
 void check_image_extension(const std::string& path) { format_of(path); }
 
 void check_image_writable(const std::string& path) { check_writable(path); }

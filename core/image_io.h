@@ -16,6 +16,9 @@ void check_image_extension(const std::string& path);
 // Whether the file, by its extension, holds colours in 8 bits (.png) rather than radiance.
 bool holds_colours(const std::string& path);
 
+// Whether it is an .exr, which can also be a film file: see core/film_file.h.
+bool is_exr(const std::string& path);
+
 // Throws Error, naming the path, if no file can be written there (no such folder, a folder itself, no permission). For
 // the command line to call before a long render; creates nothing.
 void check_image_writable(const std::string& path);

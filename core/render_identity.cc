@@ -59,10 +59,11 @@ std::string scene_hash(const Scene& scene) {
   fnv.add(uint64_t{scene.environment.width});
   fnv.add(scene.environment.rgb);
   add(fnv, scene.up);
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv.hash()));
-  return text;
+  return fnv.hex();
 }
+
+// Before the number of what has a name on the command line: a number that says nothing to a user.
+constexpr char kChoice = '#';
 
 std::string number(double x) {
   char text[32];
@@ -73,26 +74,26 @@ std::string number(double x) {
 }  // namespace
 
 RenderIdentity render_identity(const Scene& scene, const Settings& s, const std::string& arithmetic) {
-  const auto number_of = [](auto choice) { return std::to_string(static_cast<uint64_t>(choice)); };
+  const auto choice = [](auto value) { return kChoice + std::to_string(static_cast<int>(value)); };
   const bool adaptive = s.adaptive_batch > 0 || s.noise > 0;
   return {{"scene", scene_hash(scene)},
           {"resolution", std::to_string(s.width) + " x " + std::to_string(s.height)},
           {"crop", std::to_string(s.window().x) + " " + std::to_string(s.window().y) + " " +
                        std::to_string(s.window().width) + " " + std::to_string(s.window().height)},
           {"seed", std::to_string(s.seed)},
-          {"sampler", number_of(s.sampler)},
-          {"view", number_of(s.view)},
+          {"sampler", choice(s.sampler)},
+          {"view", choice(s.view)},
           {"lens-radius", number(s.lens_radius)},
           {"focal-distance", s.autofocus ? "auto" : number(s.focal_distance)},
           {"light-samples", std::to_string(s.light_samples)},
           {"max-depth", std::to_string(s.max_depth)},
           {"only-bounce", s.only_bounce ? std::to_string(*s.only_bounce) : "none"},
-          {"direct", number_of(s.direct)},
-          {"connect", number_of(s.connect)},
-          {"bsdf-sampling", number_of(s.bsdf_sampling)},
-          {"fresnel", number_of(s.fresnel)},
-          {"model", number_of(s.course.masking) + number_of(s.course.clamp)},
-          {"accel", number_of(s.accel)},
+          {"direct", choice(s.direct)},
+          {"connect", choice(s.connect)},
+          {"bsdf-sampling", choice(s.bsdf_sampling)},
+          {"fresnel", choice(s.fresnel)},
+          {"model", choice(s.course.masking + 2 * s.course.clamp)},
+          {"accel", choice(s.accel)},
           {"adaptive", std::to_string(s.adaptive_batch) + " " +
                            (s.adaptive_batch > 0 ? number(s.adaptive_tolerance) : std::string("0"))},
           {"noise", number(s.noise)},
@@ -111,6 +112,7 @@ std::string difference(const RenderIdentity& expected, const RenderIdentity& oth
     if (i >= other.size() || other[i].first != flag) return flag + " is not known";
     if (other[i].second == value) continue;
     if (flag == "scene") return "of another scene (or the scene has changed)";
+    if (value.starts_with(kChoice)) return flag + " is another";
     return flag + " is " + other[i].second + ", not " + value;
   }
   return {};

@@ -19,7 +19,7 @@ RenderIdentity render_identity(const Scene& scene, const Settings& settings, con
 // The instruction sets whose kernels give the same bits have the same name here.
 std::string arithmetic_of(const std::string& isa);
 
-// What of `other` is not as in `expected`, for a message: "-m is 7, not 5". Empty: nothing.
+// What of `other` is not as in `expected`, for a message: "max-depth is 7, not 5". Empty: nothing.
 std::string difference(const RenderIdentity& expected, const RenderIdentity& other);
 
 }  // namespace lanewise

@@ -19,22 +19,28 @@ auto set_sum(Film& film) {
 
 }  // namespace
 
-void SavedRender::put_film(const std::string& name, uint32_t width, const Film& film) {
-  put(name + ".samples", width, [&](size_t i) { return film.samples[i]; });
-  put(name + ".r", width, sum_of<&PixelSums::r>(film));
-  put(name + ".g", width, sum_of<&PixelSums::g>(film));
-  put(name + ".b", width, sum_of<&PixelSums::b>(film));
-  put(name + ".y", width, sum_of<&PixelSums::y>(film));
-  put(name + ".y2", width, sum_of<&PixelSums::y2>(film));
+void SavedRender::put_film_at(const Window& place, const std::string& name, uint32_t width, const Film& film) {
+  put_at(place, name + ".samples", width, [&](size_t i) { return film.samples[i]; });
+  put_at(place, name + ".r", width, sum_of<&PixelSums::r>(film));
+  put_at(place, name + ".g", width, sum_of<&PixelSums::g>(film));
+  put_at(place, name + ".b", width, sum_of<&PixelSums::b>(film));
+  put_at(place, name + ".y", width, sum_of<&PixelSums::y>(film));
+  put_at(place, name + ".y2", width, sum_of<&PixelSums::y2>(film));
 }
 
-void SavedRender::get_film(const std::string& name, uint32_t width, Film& film) const {
-  get<uint64_t>(name + ".samples", width, [&](size_t i, uint64_t samples) { film.samples[i] = samples; });
-  get<Uint128>(name + ".r", width, set_sum<&PixelSums::r>(film));
-  get<Uint128>(name + ".g", width, set_sum<&PixelSums::g>(film));
-  get<Uint128>(name + ".b", width, set_sum<&PixelSums::b>(film));
-  get<Uint128>(name + ".y", width, set_sum<&PixelSums::y>(film));
-  get<Uint128>(name + ".y2", width, set_sum<&PixelSums::y2>(film));
+void SavedRender::get_film_at(const Window& place, const std::string& name, uint32_t width, Film& film) const {
+  get_at<uint64_t>(place, name + ".samples", width, [&](size_t i, uint64_t samples) { film.samples[i] = samples; });
+  get_at<Uint128>(place, name + ".r", width, set_sum<&PixelSums::r>(film));
+  get_at<Uint128>(place, name + ".g", width, set_sum<&PixelSums::g>(film));
+  get_at<Uint128>(place, name + ".b", width, set_sum<&PixelSums::b>(film));
+  get_at<Uint128>(place, name + ".y", width, set_sum<&PixelSums::y>(film));
+  get_at<Uint128>(place, name + ".y2", width, set_sum<&PixelSums::y2>(film));
+}
+
+Film SavedRender::own_film(const std::string& name) const {
+  Film film(size_t{area.width} * area.height);
+  get_film_at(own(), name, area.width, film);
+  return film;
 }
 
 bool SavedRender::has_film(const std::string& name) const {

@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 
 using DD = hn::CappedTag<double, kLanes>;
 using VD = hn::Vec<DD>;
-using VF2 = hn::Rebind<float, DD>;  // as many floats
+using DS = hn::Rebind<float, DD>;  // as many floats
 
 // Above this, samples are added one by one: below it, the numbers that Cut makes are below 2^50.
 constexpr float kBright = 0x1p20f;
@@ -81,7 +81,7 @@ struct Chunk {
 // Of samples begin .. begin + kChunk - 1; those behind the last path are whatever they are.
 void Cut(const PathState& s, size_t begin, Chunk& chunk) {
   const DD d;
-  const VF2 f;
+  const DS f;
   for (size_t i = 0; i < kChunk && begin + i < s.batch.paths; i += hn::Lanes(d)) {
     const auto load = [&](const float* x) HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(f, x + begin + i)); };
     const VD r = load(s.result_r), g = load(s.result_g), b = load(s.result_b);

@@ -121,6 +121,9 @@ TEST_CASE("film file: what overlaps or is of another render is refused, and says
   other = small();
   other.seed = 1;
   CHECK(refuse(render_part(other, 8, 9)) == "b.exr: cannot merge: seed is 1, not 0");
+  other = small();
+  other.direct = Direct::kLight;
+  CHECK(refuse(render_part(other, 8, 9)) == "b.exr: cannot merge: direct is another");
   FilmFile changed = render_part(small(), 8, 9);
   Scene scene = test::test_scene();
   scene.materials[0].reflectance.x *= 0.999;

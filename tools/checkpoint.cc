@@ -1,7 +1,9 @@
 #include "tools/checkpoint.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include "core/types.h"
 
@@ -10,15 +12,21 @@ namespace {
 
 constexpr const char* kFirstSample = "first-sample";
 
-// The samples that every pixel has; none if some have more than others, or if they are in two halves.
-std::vector<SampleRange> ranges_of(const SavedRender& state, const Settings& settings) {
-  if (!state.has_film("picture")) return {};
+// The least and the most samples that a pixel has.
+std::pair<uint64_t, uint64_t> samples_of(const SavedRender& state, const Settings& settings) {
   uint64_t least = kMaxSpp, most = 0;
   state.get<uint64_t>("picture.samples", settings.width, [&](size_t, uint64_t samples) {
     least = std::min(least, samples);
     most = std::max(most, samples);
   });
-  if (least != most || most == 0 || settings.adaptive_batch > 0) return {};
+  return {least, most};
+}
+
+// The samples that every pixel has; none if some have more than others, or if they are in two halves.
+std::vector<SampleRange> ranges_of(const SavedRender& state, const Settings& settings) {
+  if (settings.adaptive_batch > 0 || !state.has_film("picture")) return {};
+  const auto [least, most] = samples_of(state, settings);
+  if (least != most || most == 0) return {};
   return {{settings.first_sample, settings.first_sample + most}};
 }
 
@@ -53,7 +61,7 @@ const SavedRender* Checkpoint::resumed(const RenderIdentity& identity) const {
   if (state.numbers.contains(kFirstSample) && state.number(kFirstSample) != settings.first_sample) {
     refuse("it begins with sample " + std::to_string(state.number(kFirstSample)));
   }
-  if (!before_->ranges.empty() && before_->ranges.back().end > settings.first_sample + settings.spp) {
+  if (state.has_film("picture") && samples_of(state, settings).second > settings.spp) {
     refuse("it has more samples than are asked for");
   }
   return &state;
@@ -66,7 +74,7 @@ void Checkpoint::write(const FilmFile& film) {
     write_file(options_.checkpoint, encode_film(film));
   } catch (const std::exception& e) {
     failure_ = e.what();
-    if (!failed_before) std::cerr << "\nlanewise: warning: " << failure_ << "; rendering goes on\n";
+    if (!failed_before) std::cerr << "lanewise: warning: " << failure_ << "; rendering goes on\n";
   }
 }
 

@@ -22,6 +22,8 @@ A file could not be read or written, the machine lacks something, or \fBlanewise
 .B 2
 The command line is wrong.
 .PP
+A render that SIGINT or SIGTERM stops ends by that signal, once its picture and its checkpoint are written.
+.PP
 What went wrong is told in one line on the standard error. A picture is written beside its name and renamed, so that an old
 one is never half overwritten.
 .SH FILES

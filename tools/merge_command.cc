@@ -9,8 +9,6 @@
 #include "core/types.h"
 #include "tools/commands.h"
 #include "tools/output_files.h"
-#include "tools/text.h"
-#include "tools/version.h"
 
 namespace lanewise {
 namespace {
@@ -28,8 +26,6 @@ constexpr const char* kExamples =
     "  lanewise merge a.exr b.exr -f box.png                    the picture of -s 1024, to the bit\n"
     "  lanewise merge a.exr b.exr -f ab.exr                     a film file again, to merge with more";
 
-bool is_film(const std::string& path) { return path.ends_with(".exr"); }
-
 void run_merge(const MergeOptions& o) {
   check_image_extension(o.output);
   check_image_writable(o.output);
@@ -39,7 +35,7 @@ void run_merge(const MergeOptions& o) {
 
   FilmFile film = read_film(o.parts.front(), true);
   for (size_t i = 1; i < o.parts.size(); ++i) merge_film(film, read_film(o.parts[i], true), o.parts[i]);
-  if (is_film(o.output)) {
+  if (is_exr(o.output)) {
     write_file(o.output, encode_film(film));
   } else {
     write_image(o.output, develop(film));

@@ -7,6 +7,7 @@
 #include "core/noise_film.h"
 #include "core/types.h"
 #include "core/film_file.h"
+#include "core/image_io.h"
 #include "tools/flags.h"
 
 namespace lanewise {
@@ -301,8 +302,7 @@ void complete(RenderOptions& o, const CLI::App& app) {
     if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = kMaxSpp;
   }
   if (o.output.empty()) o.output = default_output(o.scene, o.is_part() ? ".exr" : ".png");
-  if (o.is_part() && !o.output.ends_with(".exr"))
-    throw UsageError("--samples: " + o.output + ": needs an .exr to write");
+  if (o.is_part() && !is_exr(o.output)) throw UsageError("--samples: " + o.output + ": needs an .exr to write");
 }
 
 }  // namespace lanewise
