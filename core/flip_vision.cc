@@ -58,7 +58,8 @@ void SeenBand::filter(Plane plane, const Weights& weights, uint32_t y, std::vect
 }
 
 void SeenBand::see(uint32_t y, SeenRow& seen) const {
-  const auto& [contrast, feature] = filters_;
+  const auto& contrast = filters_.contrast;
+  const auto& feature = filters_.feature;
   std::vector<float> a, b, c, d;
   filter(kLightness, contrast.lightness, y, a);
   filter(kRedGreen, contrast.red_green, y, b);

@@ -23,7 +23,7 @@
 #include "scenes/ply_header.h"
 #include "scenes/quoted.h"
 
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(LANEWISE_FUZZ)
 // Assimp 5.2 loses what it has read of an OBJ or PLY file when it gives up on the file.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp\n"; }
