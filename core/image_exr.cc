@@ -8,12 +8,16 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
+#include <algorithm>
+
 #include "core/exr_slice.h"
 #include "core/types.h"
 
 namespace lanewise {
 namespace {
 
+constexpr int64_t kMaxSide = 1 << 17;  // OpenEXR's own buffers hold up to 256 rows each
+constexpr int64_t kBandPixels = 1 << 20;
 constexpr const char* kChannels[] = {"R", "G", "B"};
 
 Imf::Slice slice(const Image& image, size_t c, int64_t x, int64_t y) {
@@ -45,7 +49,8 @@ Image read_exr(const std::string& path, uint64_t max_pixels) {
   Imf::InputFile file(path.c_str());
   const Imath::Box2i window = file.header().dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
-  if (width <= 0 || height <= 0 || static_cast<uint64_t>(width) > max_pixels / static_cast<uint64_t>(height)) {
+  if (width <= 0 || height <= 0 || width > kMaxSide ||
+      static_cast<uint64_t>(width) > max_pixels / static_cast<uint64_t>(height)) {
     throw Error("absurd size " + std::to_string(width) + "x" + std::to_string(height));
   }
   const Imf::ChannelList& channels = file.header().channels();
@@ -53,13 +58,22 @@ Image read_exr(const std::string& path, uint64_t max_pixels) {
   if (!grey && !channels.findChannel("R") && !channels.findChannel("G") && !channels.findChannel("B")) {
     throw Error("no channel R, G, B or Y");
   }
-  Image image(static_cast<uint32_t>(width), static_cast<uint32_t>(height));
+  Image image;
+  image.width = static_cast<uint32_t>(width);
+  image.height = static_cast<uint32_t>(height);
+  image.rgb.reserve(static_cast<size_t>(3 * width * height));  // once, so that rows stay where they are
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < (grey ? 1 : 3); ++c) {
     frame.insert(grey ? "Y" : kChannels[c], slice(image, c, window.min.x, window.min.y));
   }
   file.setFrameBuffer(frame);
-  file.readPixels(window.min.y, window.max.y);
+  // Some rows at a time, so that a small file that claims to hold a large picture fails before memory is used for it.
+  const int64_t band = std::max<int64_t>(1, kBandPixels / width);
+  for (int64_t y = 0; y < height; y += band) {
+    const int64_t end = std::min(y + band, height);
+    image.rgb.resize(static_cast<size_t>(3 * width * end));
+    file.readPixels(static_cast<int>(window.min.y + y), static_cast<int>(window.min.y + end - 1));
+  }
   if (grey) {
     for (size_t i = 0; i < image.rgb.size(); i += 3) image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
   }

@@ -19,7 +19,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PFM is written with a negative scale: little-endian");
 
-constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
+// So that what is read, and what that takes, stays within 2 GiB.
+constexpr uint64_t kMaxPixels = uint64_t{1} << 27, kMaxPngPixels = uint64_t{1} << 26;
 
 enum class Format { kPng, kExr, kPfm, kHdr };
 
@@ -83,7 +84,7 @@ Image read_any(const std::string& path) {
   }
   const std::string bytes =
       read_file(path, format == Format::kPng ? kMaxStbBytes : kMaxPixels * 3 * sizeof(float) + 100);
-  if (format == Format::kPng) return decode_png(bytes, kMaxPixels);
+  if (format == Format::kPng) return decode_png(bytes, kMaxPngPixels);
   if (format == Format::kHdr) return decode_hdr(bytes, kMaxPixels);
   return decode_pfm(bytes);
 }

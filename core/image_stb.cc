@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 
+#include "core/image_jpeg.h"
 #include "core/srgb.h"
 #include "core/types.h"
 
@@ -35,7 +36,23 @@ void append_to_string(void* context, void* data, int size) {
   static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<size_t>(size));
 }
 
-Error damaged() { return Error(std::string("damaged picture (") + stbi_failure_reason() + ")"); }
+// stb quotes names of chunks, whatever they are.
+Error damaged() {
+  std::string reason = stbi_failure_reason();
+  std::ranges::replace_if(
+      reason, [](unsigned char c) { return c < ' ' || c >= 0x7F; }, '?');
+  return Error("damaged picture (" + reason + ")");
+}
+
+std::vector<float> linear_of_short() {
+  std::vector<float> linear(65536);
+  for (size_t v = 0; v < linear.size(); ++v)
+    linear[v] = static_cast<float>(linear_from_srgb(static_cast<double>(v) / 65535));
+  return linear;
+}
+
+// What a file of so many bytes may hold: deflate makes at most 1032 bytes of one, and small pictures are nobody's harm.
+uint64_t bearable_pixels(size_t bytes) { return (uint64_t{1} << 22) + uint64_t{1032} * bytes; }
 
 // A picture in memory, its size known to be bearable.
 struct Encoded {
@@ -46,7 +63,9 @@ struct Encoded {
   Encoded(const std::string& bytes, uint64_t max_pixels)
       : data(reinterpret_cast<const stbi_uc*>(bytes.data())),
         size(static_cast<int>(std::min(bytes.size(), kMaxStbBytes))) {
+    max_pixels = std::min(max_pixels, bearable_pixels(bytes.size()));
     int channels = 0;
+    if (has_overlong_huffman_table(bytes)) throw Error("damaged picture (a Huffman table of more than 256 codes)");
     if (!stbi_info_from_memory(data, size, &width, &height, &channels)) throw damaged();
     if (width <= 0 || height <= 0 || static_cast<uint64_t>(width) > max_pixels / static_cast<uint64_t>(height)) {
       throw Error("absurd size " + std::to_string(width) + "x" + std::to_string(height));
@@ -77,12 +96,9 @@ Image decode_png(const std::string& bytes, uint64_t max_pixels) {
   const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
       stbi_load_16_from_memory(in.data, in.size, &in.width, &in.height, &channels, 3), &stbi_image_free);
   if (!pixels) throw damaged();
-  std::vector<float> linear(65536);
-  for (size_t v = 0; v < linear.size(); ++v)
-    linear[v] = static_cast<float>(linear_from_srgb(static_cast<double>(v) / 65535));
+  static const std::vector<float> linear = linear_of_short();
   Image image(static_cast<uint32_t>(in.width), static_cast<uint32_t>(in.height));
-  std::transform(pixels.get(), pixels.get() + image.rgb.size(), image.rgb.begin(),
-                 [&](stbi_us v) { return linear[v]; });
+  std::transform(pixels.get(), pixels.get() + image.rgb.size(), image.rgb.begin(), [](stbi_us v) { return linear[v]; });
   return image;
 }
 

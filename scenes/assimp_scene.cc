@@ -33,6 +33,9 @@ namespace lanewise {
 namespace {
 
 constexpr size_t kMaxTriangles = size_t{1} << 26;
+constexpr size_t kMaxCopies = size_t{1} << 23;  // of triangles: a small file may ask for no more than that
+constexpr size_t kMaxMeshes = 1'000'000;
+constexpr size_t kLongestName = 256;  // whatever is instanced has a copy
 
 enum class Format { kObj, kPly, kGltf };
 
@@ -127,12 +130,17 @@ class Loader {
         notice("points and lines are skipped");
       if (from.HasVertexColors(0)) notice("vertex colours are not read");
     }
+    if (++instances_ > kMaxMeshes) throw Error(path_ + ": more than 1 million meshes, instances counted");
     if (read->second.triangles.empty()) return;
+    if (is_new) own_triangles_ += read->second.triangles.size();
     triangles_ += read->second.triangles.size();
     if (triangles_ > kMaxTriangles) throw Error(path_ + ": more than 2^26 triangles, instances counted");
+    if (triangles_ > kMaxCopies + own_triangles_) {
+      throw Error(path_ + ": more than 2^23 triangles beyond the file's own, by instances");
+    }
     scene_.meshes.push_back(read->second);
     Mesh& mesh = scene_.meshes.back();
-    mesh.name = name;
+    mesh.name = name.substr(0, kLongestName);
     place_mesh(mesh, to_world);
     mesh.material = material(from.mMaterialIndex);
   }
@@ -174,7 +182,7 @@ class Loader {
   }
 
   void notice(const std::string& text) {
-    if (std::ranges::find(scene_.notices, text) == scene_.notices.end()) scene_.notices.push_back(text);
+    if (notices_.insert(text).second) scene_.notices.push_back(text);
   }
 
   const std::string& path_;
@@ -188,7 +196,8 @@ class Loader {
   std::map<uint32_t, Mesh> meshes_;  // in their own spaces, by Assimp's index
   std::map<uint32_t, uint32_t> materials_;
   std::vector<std::string> missed_;  // files that could not be read
-  size_t triangles_ = 0;
+  std::set<std::string> notices_;
+  size_t instances_ = 0, triangles_ = 0, own_triangles_ = 0;  // the last without those of later instances
 };
 
 }  // namespace

@@ -27,6 +27,8 @@ class CameraReader {
       json_ = json::parse(file);
     } catch (const json::parse_error& e) {
       throw Error(path_ + ": not JSON: byte " + std::to_string(e.byte));
+    } catch (const json::out_of_range&) {
+      fail("a number is beyond the range of a double");
     }
     if (!json_.is_object()) fail("a camera is a JSON object with eye, target and xfov");
   }

@@ -44,6 +44,8 @@ bool looks_like_html(std::string_view text) {
   return start.find("<html") != std::string::npos || start.find("<!doctype html") != std::string::npos;
 }
 
+constexpr size_t kLongestName = 256;  // whatever is instanced has a copy
+
 enum class NumberError { kNone, kWord, kRange };
 
 // Parses a double at begin. from_chars knows no locale, no leading plus and no underflow.
@@ -66,7 +68,8 @@ NumberError parse_double(const char*& begin, const char* end, double& value) {
 
 std::string name_of(pugi::xml_node node) {
   const char* name = node.attribute("name").value();
-  return *name != '\0' ? name : node.attribute("id").value();
+  const std::string_view found = *name != '\0' ? name : node.attribute("id").value();
+  return std::string(found.substr(0, kLongestName));
 }
 
 pugi::xml_node cgl_technique(pugi::xml_node node) {

@@ -61,7 +61,7 @@ class Document {
   std::unordered_map<std::string, pugi::xml_node> ids_;
 };
 
-// "name" or else "id", for display.
+// "name" or else "id", for display: at most its first 256 bytes.
 std::string name_of(pugi::xml_node node);
 
 // The <technique profile="CGL"> of the element's <extra>; null if there is none.

@@ -95,6 +95,7 @@ class MeshReader {
   void read_texcoords(pugi::xml_node element, Inputs& inputs) {
     for (const pugi::xml_node input : element.children("input")) {
       if (std::strcmp(input.attribute("semantic").value(), "TEXCOORD") != 0) continue;
+      if (inputs.texcoords.size() == kMaxTexcoords) document_.fail(input, "more than 16 sets of texture coordinates");
       inputs.texcoords.push_back({document_.count(input, "set").value_or(0),
                                   document_.count(input, "offset").value_or(0),
                                   arrays_.read(document_.refer(input, "source", "source"), 2)});
@@ -221,6 +222,7 @@ class MeshReader {
   }
 
   static constexpr size_t kMaxStride = 256;
+  static constexpr size_t kMaxTexcoords = 16;  // each is read, and kept, for every corner
 
   const Document& document_;
   ArrayCache& arrays_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace lanewise::collada {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr uint32_t kMaxDepth = 1000;
 constexpr uint64_t kMaxNodes = 1'000'000;
 constexpr uint64_t kMaxTriangles = uint64_t{1} << 26;
+constexpr uint64_t kMaxCopies = uint64_t{1} << 23;  // of triangles: a small file may ask for no more than that
 
 // Of a node with all below it.
 struct Size {
@@ -40,17 +42,27 @@ class Measure {
       } else if (std::strcmp(child.name(), "instance_node") == 0) {
         add(size, measure(document_.refer(child, "url", "node"), depth + 1));
       } else if (std::strcmp(child.name(), "instance_geometry") == 0) {
-        for (const Part& part : library_.geometry(child).parts) size.triangles += part.triangles.size();
-        size.nodes += 1;
+        add_geometry(size, library_.geometry(child));
       }
-      if (size.nodes > kMaxNodes) document_.fail(node, "holds more than 1 million nodes, instances counted");
+      if (size.nodes > kMaxNodes) document_.fail(node, "holds more than 1 million nodes and meshes, instances counted");
       if (size.triangles > kMaxTriangles) document_.fail(node, "holds more than 2^26 triangles, instances counted");
+      if (size.triangles > kMaxCopies + own_triangles_) {
+        document_.fail(node, "holds more than 2^23 triangles beyond the file's own, by instances");
+      }
     }
     size.open = false;
     return size;
   }
 
  private:
+  void add_geometry(Size& size, const Geometry& geometry) {
+    uint64_t triangles = 0;
+    for (const Part& part : geometry.parts) triangles += part.triangles.size();
+    if (counted_.insert(&geometry).second) own_triangles_ += triangles;
+    size.triangles += triangles;
+    size.nodes += 1 + geometry.parts.size();
+  }
+
   static void add(Size& size, const Size& child) {
     size.nodes += child.nodes;
     size.triangles += child.triangles;
@@ -63,6 +75,8 @@ class Measure {
 
   const Document& document_;
   Library& library_;
+  std::unordered_set<const Geometry*> counted_;
+  uint64_t own_triangles_ = 0;              // of those
   std::unordered_map<size_t, Size> sizes_;  // by hash_value; references to its values survive insertions
 };
 

@@ -11,6 +11,7 @@ namespace {
 constexpr int kMaxDepth = 1000;
 constexpr uint64_t kMaxBytes = uint64_t{1} << 33;     // of a buffer: products of two such numbers stay exact
 constexpr uint64_t kMaxCount = uint64_t{1} << 28;     // of an accessor's elements
+constexpr uint64_t kMaxShared = uint64_t{1} << 22;    // of vertices and indices beyond 4 for every byte of the buffers
 constexpr uint64_t kMaxUnstored = uint64_t{1} << 20;  // of those that no buffer holds, and a few bytes ask for
 
 constexpr uint64_t kByte = 5121, kShort = 5123, kInt = 5125, kFloat = 5126;
@@ -22,7 +23,7 @@ class Checker {
 
   void check() {
     check_version();
-    for (const JsonValue& buffer : buffers_.elements()) bounded(buffer["byteLength"], kMaxBytes);
+    for (const JsonValue& buffer : buffers_.elements()) bytes_ += bounded(buffer["byteLength"], kMaxBytes);
     for (const JsonValue& view : views_.elements()) check_view(view);
     for (const JsonValue& accessor : accessors_.elements()) check_accessor(accessor);
     for (const JsonValue& mesh : root_["meshes"].elements()) check_mesh(mesh);
@@ -145,6 +146,7 @@ class Checker {
         corners_ += accessor(primitive["indices"], "SCALAR", {kByte, kShort, kInt})["count"].count(0);
       }
       if (corners_ > kMaxCount) mesh.fail("brings the file to more than 2^28 vertices and indices");
+      if (corners_ > kMaxShared + 4 * bytes_) mesh.fail("brings the file to many more vertices and indices than it has bytes");
       if (primitive["material"].present()) primitive["material"].index(root_["materials"]);
       if (primitive["mode"].count(4) > 6) primitive["mode"].fail("is none from 0 to 6");
     }
@@ -187,6 +189,7 @@ class Checker {
   JsonValue root_, accessors_, views_, buffers_;
   std::vector<JsonValue> nodes_;
   std::vector<bool> reached_;
+  uint64_t bytes_ = 0;  // of all buffers, as they claim
   uint64_t corners_ = 0;
 };
 

@@ -104,6 +104,8 @@ void GltfDocument::parse(std::string_view text) {
     json_ = json::parse(text, limit);
   } catch (const json::parse_error& e) {
     throw Error(path_ + ": not JSON: byte " + std::to_string(e.byte));
+  } catch (const json::out_of_range&) {
+    throw Error(path_ + ": a number is beyond the range of a double");
   }
   if (deep) throw Error(path_ + ": JSON that is nested more than 1000 deep");
   if (!json_.is_object()) throw Error(path_ + ": the JSON is not an object");

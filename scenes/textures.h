@@ -21,10 +21,12 @@ class Textures {
   uint32_t embedded(const std::string& name, const std::string& bytes);
 
  private:
+  Texture decode(const std::string& bytes);
   uint32_t add(Texture texture, const std::string& name);
 
   Scene& scene_;
   std::map<std::string, uint32_t> known_;
+  uint64_t bytes_ = 0, texels_ = 0;  // of the files read so far, and of what they hold
 };
 
 }  // namespace lanewise

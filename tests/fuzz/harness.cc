@@ -20,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool is_used = true;  // what is read
+
 std::vector<const Harness*>& registered() {
   static std::vector<const Harness*> all;
   return all;
@@ -65,7 +67,8 @@ Harness::Harness(std::string name_, std::string extension_, std::function<void(c
   registered().push_back(this);
 }
 
-void Harness::run(std::string_view bytes) const {
+void Harness::run(std::string_view bytes, bool render) const {
+  is_used = render;
   static const Folder folder;
   const std::string path = folder.write("input" + extension, bytes);
   const size_t before = folder.files();
@@ -86,7 +89,7 @@ std::vector<const Harness*> harnesses() {
 void use(const Scene& scene) {
   constexpr size_t kMostToInspect = 20'000, kMostToRender = 2'000;
   const size_t primitives = scene.triangle_count() + scene.spheres.size();
-  if (primitives > kMostToInspect) return;
+  if (primitives > kMostToInspect || !is_used) return;
   scene_warnings(scene);
   light_facts(scene);
   material_uses(scene);

@@ -19,7 +19,8 @@ struct Harness {
   // read gets the path of a file with these bytes, in a folder of its own that also has wood.png, a picture for textures.
   Harness(std::string name, std::string extension, std::function<void(const std::string& path)> read);
 
-  void run(std::string_view bytes) const;
+  // render: whether a scene is used, not only read; that takes ten times as long.
+  void run(std::string_view bytes, bool render = true) const;
 
   std::string name;
   std::string extension;  // of the file, with its dot
