@@ -9,20 +9,49 @@
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
+#include <cstring>
+#include <string_view>
 
+#include "core/exr_header.h"
 #include "core/exr_slice.h"
+#include "core/file.h"
 #include "core/types.h"
 
 namespace lanewise {
 namespace {
 
-constexpr int64_t kMaxSide = 1 << 17;  // OpenEXR's own buffers hold up to 256 rows each
+constexpr int64_t kMaxSide = 1 << 17;                             // OpenEXR's own buffers hold up to 256 rows each
+constexpr int64_t kMaxTileSide = 1 << 12, kMaxTileRow = 1 << 26;  // it keeps whole rows of tiles
+constexpr uint64_t kHeaderBytes = 1 << 26;
 constexpr int64_t kBandPixels = 1 << 20;
 constexpr const char* kChannels[] = {"R", "G", "B"};
 
 Imf::Slice slice(const Image& image, size_t c, int64_t x, int64_t y) {
   return exr_slice(Imf::FLOAT, image.rgb.data() + c, 3 * sizeof(float), x, y, image.width);
 }
+
+class MemoryStream : public Imf::IStream {
+ public:
+  MemoryStream(const std::string& name, std::string_view bytes) : IStream(name.c_str()), bytes_(bytes) {}
+
+  // Whether anything is left.
+  bool read(char* to, int count) override {
+    if (count < 0 || static_cast<size_t>(count) > bytes_.size() - at_)
+      throw Error("damaged picture (the file ends early)");
+    std::memcpy(to, bytes_.data() + at_, static_cast<size_t>(count));
+    at_ += static_cast<size_t>(count);
+    return at_ < bytes_.size();
+  }
+  uint64_t tellg() override { return at_; }
+  void seekg(uint64_t to) override {
+    if (to > bytes_.size()) throw Error("damaged picture (it refers beyond the file's end)");
+    at_ = to;
+  }
+
+ private:
+  std::string_view bytes_;
+  size_t at_ = 0;
+};
 
 }  // namespace
 
@@ -46,12 +75,19 @@ std::string encode_exr(const Image& image, const std::vector<std::pair<std::stri
 }
 
 Image read_exr(const std::string& path, uint64_t max_pixels) {
-  Imf::InputFile file(path.c_str());
+  const std::string bytes = read_file(path, kHeaderBytes + max_pixels * 3 * sizeof(float));
+  check_exr_header(bytes);
+  Imf::Header::setMaxTileSize(kMaxTileSide, kMaxTileSide);
+  MemoryStream stream(path, bytes);
+  Imf::InputFile file(stream);
   const Imath::Box2i window = file.header().dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
   if (width <= 0 || height <= 0 || width > kMaxSide ||
       static_cast<uint64_t>(width) > max_pixels / static_cast<uint64_t>(height)) {
     throw Error("absurd size " + std::to_string(width) + "x" + std::to_string(height));
+  }
+  if (file.header().hasTileDescription() && width * file.header().tileDescription().ySize > kMaxTileRow) {
+    throw Error("absurdly large tiles");
   }
   const Imf::ChannelList& channels = file.header().channels();
   const bool grey = channels.findChannel("Y") && !channels.findChannel("R");
