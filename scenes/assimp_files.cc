@@ -50,8 +50,9 @@ class MemoryStream : public Assimp::IOStream {
 
 }  // namespace
 
-SceneFiles::SceneFiles(const std::string& path, const std::string& text, std::vector<std::string>& missed)
-    : path_(path), text_(text), missed_(missed) {}
+SceneFiles::SceneFiles(const std::string& path, const std::string& text, std::string preamble,
+                       std::vector<std::string>& missed)
+    : path_(path), text_(text), preamble_(std::move(preamble)), missed_(missed) {}
 
 bool SceneFiles::Exists(const char* file) const { return file == path_ || is_own_file(path_, file); }
 
@@ -61,7 +62,7 @@ Assimp::IOStream* SceneFiles::Open(const char* file, const char* mode) {
   std::string reason = "is no file in the scene's folder";
   if (is_own_file(path_, file)) {
     try {
-      return new MemoryStream(read_file(file, kMaxFileBytes));
+      return new MemoryStream(preamble_ + read_file(file, kMaxFileBytes));
     } catch (const Error& e) {
       reason = e.what();
     }

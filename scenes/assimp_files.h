@@ -11,9 +11,9 @@ namespace lanewise {
 // does not exist for it.
 class SceneFiles : public Assimp::IOSystem {
  public:
-  // text: what stands for the scene's own file; missed gets a line for each file that could not be read. All arguments
-  // must outlive the object.
-  SceneFiles(const std::string& path, const std::string& text, std::vector<std::string>& missed);
+  // text: what stands for the scene's own file; preamble: what every other file is made to begin with; missed gets a line for
+  // each file that could not be read. All arguments but the preamble must outlive the object.
+  SceneFiles(const std::string& path, const std::string& text, std::string preamble, std::vector<std::string>& missed);
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
@@ -23,6 +23,7 @@ class SceneFiles : public Assimp::IOSystem {
  private:
   const std::string& path_;
   const std::string& text_;
+  const std::string preamble_;
   std::vector<std::string>& missed_;
 };
 

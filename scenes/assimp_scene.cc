@@ -37,6 +37,9 @@ constexpr size_t kMaxCopies = size_t{1} << 23;  // of triangles: a small file ma
 constexpr size_t kMaxMeshes = 1'000'000;
 constexpr size_t kLongestName = 256;  // whatever is instanced has a copy
 
+// Assimp 5.2 writes to no material, and so to no memory, what a .mtl says before its first newmtl.
+constexpr const char* kNoMaterial = "newmtl none\n";
+
 enum class Format { kObj, kPly, kGltf };
 
 // The name ends in one of the four, in any case.
@@ -84,8 +87,9 @@ class Loader {
     const std::string checked = gltf_ ? gltf_->geometry() : format_ == Format::kPly ? checked_ply(path_, text_) : "";
     Assimp::Importer importer;
     keep_one_format(importer, format_ == Format::kObj ? "obj" : format_ == Format::kPly ? "ply" : "gltf");
-    importer.SetIOHandler(
-        new SceneFiles(path_, format_ == Format::kObj ? text_ : checked, missed_));  // the importer deletes it
+    const bool obj = format_ == Format::kObj;
+    importer.SetIOHandler(  // the importer deletes it
+        new SceneFiles(path_, obj ? text_ : checked, obj ? kNoMaterial : "", missed_));
     assimp_ = importer.ReadFile(path_, 0);
     // Materials may be missing, geometry not.
     if (gltf_ && !missed_.empty()) throw Error(path_ + ": " + missed_.front());

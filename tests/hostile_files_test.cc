@@ -329,6 +329,12 @@ TEST_CASE("hostile files: small files that ask for much are refused, soon") {
   const size_t frame = jpeg.find("\xff\xc2");
   REQUIRE(frame != std::string::npos);
   refused("texture", jpeg.replace(frame + 5, 4, "\x2f\xff\x2f\xff"), "absurd size 12287x12287");
+  const auto found = [](const std::string& name) {
+    return test::read_text((test::source_dir() / "tests/fuzz/regressions" / name).string());
+  };
+  refused("texture", found("texture/huffman-table-too-long"), "a Huffman table of more than 256 codes");
+  refused("exr", found("exr/attribute-longer-than-file"), "its header leaves the file");
+  refused("exr", found("exr/channels-longer-than-attribute"), "its header leaves the file");
   // All rows of a picture of a gigabyte are missing.
   std::string exr = test::read_text(Trap::seed("exr/none.exr"));
   const size_t window = exr.find("dataWindow");
