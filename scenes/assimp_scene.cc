@@ -34,7 +34,6 @@ namespace {
 
 constexpr size_t kMaxTriangles = size_t{1} << 26;
 constexpr size_t kMaxCopies = size_t{1} << 23;  // of triangles: a small file may ask for no more than that
-constexpr size_t kMaxMeshes = 1'000'000;
 constexpr size_t kLongestName = 256;  // whatever is instanced has a copy
 
 // Assimp 5.2 writes to no material, and so to no memory, what a .mtl says before its first newmtl.
@@ -134,7 +133,6 @@ class Loader {
         notice("points and lines are skipped");
       if (from.HasVertexColors(0)) notice("vertex colours are not read");
     }
-    if (++instances_ > kMaxMeshes) throw Error(path_ + ": more than 1 million meshes, instances counted");
     if (read->second.triangles.empty()) return;
     if (is_new) own_triangles_ += read->second.triangles.size();
     triangles_ += read->second.triangles.size();
@@ -201,7 +199,7 @@ class Loader {
   std::map<uint32_t, uint32_t> materials_;
   std::vector<std::string> missed_;  // files that could not be read
   std::set<std::string> notices_;
-  size_t instances_ = 0, triangles_ = 0, own_triangles_ = 0;  // the last without those of later instances
+  size_t triangles_ = 0, own_triangles_ = 0;  // the last without those of later instances
 };
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace lanewise {
 namespace {
 
 constexpr int kMaxDepth = 1000;
+constexpr uint64_t kMaxMeshes = 1'000'000;
 constexpr uint64_t kMaxBytes = uint64_t{1} << 33;     // of a buffer: products of two such numbers stay exact
 constexpr uint64_t kMaxCount = uint64_t{1} << 28;     // of an accessor's elements
 constexpr uint64_t kMaxShared = uint64_t{1} << 22;    // of vertices and indices beyond 4 for every byte of the buffers
@@ -146,7 +147,8 @@ class Checker {
         corners_ += accessor(primitive["indices"], "SCALAR", {kByte, kShort, kInt})["count"].count(0);
       }
       if (corners_ > kMaxCount) mesh.fail("brings the file to more than 2^28 vertices and indices");
-      if (corners_ > kMaxShared + 4 * bytes_) mesh.fail("brings the file to many more vertices and indices than it has bytes");
+      if (corners_ > kMaxShared + 4 * bytes_)
+        mesh.fail("brings the file to many more vertices and indices than it has bytes");
       if (primitive["material"].present()) primitive["material"].index(root_["materials"]);
       if (primitive["mode"].count(4) > 6) primitive["mode"].fail("is none from 0 to 6");
     }
@@ -176,12 +178,19 @@ class Checker {
     for (const JsonValue& value : values) value.number(0);
   }
 
+  void count_meshes(const JsonValue& mesh) {
+    if (!mesh.present()) return;
+    meshes_ += root_["meshes"].at(mesh.index(root_["meshes"]))["primitives"].json().size();
+    if (meshes_ > kMaxMeshes) mesh.fail("brings the file to more than 1 million meshes, instances counted");
+  }
+
   void visit(const JsonValue& children, int depth) {
     if (depth > kMaxDepth) children.fail("are nested more than 1000 deep");
     for (const JsonValue& child : children.elements()) {
       const size_t index = child.index(root_["nodes"]);
       if (reached_[index]) child.fail("is a node that has a parent already: nodes must be a tree");
       reached_[index] = true;
+      count_meshes(nodes_[index]["mesh"]);
       visit(nodes_[index]["children"], depth + 1);
     }
   }
@@ -190,7 +199,7 @@ class Checker {
   std::vector<JsonValue> nodes_;
   std::vector<bool> reached_;
   uint64_t bytes_ = 0;  // of all buffers, as they claim
-  uint64_t corners_ = 0;
+  uint64_t corners_ = 0, meshes_ = 0;
 };
 
 }  // namespace
