@@ -5,8 +5,8 @@
 #include <memory>
 #include <new>
 
-#include "core/image_jpeg.h"
 #include "core/srgb.h"
+#include "core/stb_guard.h"
 #include "core/types.h"
 
 #pragma GCC diagnostic push
@@ -65,7 +65,7 @@ struct Encoded {
         size(static_cast<int>(std::min(bytes.size(), kMaxStbBytes))) {
     max_pixels = std::min(max_pixels, bearable_pixels(bytes.size()));
     int channels = 0;
-    if (has_overlong_huffman_table(bytes)) throw Error("damaged picture (a Huffman table of more than 256 codes)");
+    guard_stb(bytes);
     if (!stbi_info_from_memory(data, size, &width, &height, &channels)) throw damaged();
     if (width <= 0 || height <= 0 || static_cast<uint64_t>(width) > max_pixels / static_cast<uint64_t>(height)) {
       throw Error("absurd size " + std::to_string(width) + "x" + std::to_string(height));

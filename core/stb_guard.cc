@@ -1,7 +1,9 @@
-#include "core/image_jpeg.h"
+#include "core/stb_guard.h"
 
 #include <cstddef>
 #include <cstdint>
+
+#include "core/types.h"
 
 namespace lanewise {
 namespace {
@@ -25,10 +27,8 @@ bool has_length(uint8_t marker) {
   return marker != 0 && marker != 0xFF && (marker < kFirstRestart || marker > kEndOfImage);
 }
 
-}  // namespace
-
+// Of a JPEG file.
 bool has_overlong_huffman_table(std::string_view bytes) {
-  if (!bytes.starts_with('\xFF')) return false;
   const auto byte = [&](size_t i) { return i < bytes.size() ? static_cast<uint8_t>(bytes[i]) : uint8_t{0}; };
   // Whatever looks like a marker where stb may look for one: between segments, and among the entropy-coded data.
   for (size_t at = 0; at + 1 < bytes.size();) {
@@ -44,6 +44,29 @@ bool has_overlong_huffman_table(std::string_view bytes) {
     at += length < 2 ? 2 : 2 + length;
   }
   return false;
+}
+
+// Of a PNG file: a length, four letters, so many bytes, and a checksum each, to the one that is called IEND.
+bool has_overlong_chunk(std::string_view bytes) {
+  constexpr size_t kSignature = 8, kAround = 12;
+  for (size_t at = kSignature; bytes.size() >= at + kSignature;) {
+    size_t length = 0;
+    for (size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<uint8_t>(bytes[at + i]);
+    if (length > bytes.size() - at - kSignature) return true;
+    if (bytes.substr(at + 4, 4) == "IEND") return false;
+    at += length + kAround;
+  }
+  return false;
+}
+
+}  // namespace
+
+void guard_stb(std::string_view bytes) {
+  if (bytes.starts_with('\xFF') && has_overlong_huffman_table(bytes)) {
+    throw Error("damaged picture (a Huffman table of more than 256 codes)");
+  }
+  if (bytes.starts_with("\x89PNG") && has_overlong_chunk(bytes))
+    throw Error("damaged picture (a chunk leaves the file)");
 }
 
 }  // namespace lanewise
