@@ -34,7 +34,7 @@ namespace {
 
 constexpr size_t kMaxTriangles = size_t{1} << 26;
 constexpr size_t kMaxCopies = size_t{1} << 23;  // of triangles: a small file may ask for no more than that
-constexpr size_t kLongestName = 256;  // whatever is instanced has a copy
+constexpr size_t kLongestName = 256;            // whatever is instanced has a copy
 
 // Assimp 5.2 writes to no material, and so to no memory, what a .mtl says before its first newmtl.
 constexpr const char* kNoMaterial = "newmtl none\n";
