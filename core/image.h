@@ -8,6 +8,9 @@
 
 namespace lanewise {
 
+// What is rendered and read.
+constexpr uint64_t kMostPixels = uint64_t{1} << 28;
+
 struct Image {
   uint32_t width = 0;
   uint32_t height = 0;

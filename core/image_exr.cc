@@ -3,25 +3,20 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
-#include <cstring>
-#include <string_view>
 
-#include "core/exr_header.h"
+#include "core/exr_input.h"
 #include "core/exr_slice.h"
-#include "core/file.h"
 #include "core/types.h"
 
 namespace lanewise {
 namespace {
 
-constexpr int64_t kMaxSide = 1 << 17;                             // OpenEXR's own buffers hold up to 256 rows each
-constexpr int64_t kMaxTileSide = 1 << 12, kMaxTileRow = 1 << 26;  // it keeps whole rows of tiles
+constexpr int64_t kMaxSide = 1 << 17;  // OpenEXR's own buffers hold up to 256 rows each
 constexpr uint64_t kHeaderBytes = 1 << 26;
 constexpr int64_t kBandPixels = 1 << 20;
 constexpr const char* kChannels[] = {"R", "G", "B"};
@@ -29,29 +24,6 @@ constexpr const char* kChannels[] = {"R", "G", "B"};
 Imf::Slice slice(const Image& image, size_t c, int64_t x, int64_t y) {
   return exr_slice(Imf::FLOAT, image.rgb.data() + c, 3 * sizeof(float), x, y, image.width);
 }
-
-class MemoryStream : public Imf::IStream {
- public:
-  MemoryStream(const std::string& name, std::string_view bytes) : IStream(name.c_str()), bytes_(bytes) {}
-
-  // Whether anything is left.
-  bool read(char* to, int count) override {
-    if (count < 0 || static_cast<size_t>(count) > bytes_.size() - at_)
-      throw Error("damaged picture (the file ends early)");
-    std::memcpy(to, bytes_.data() + at_, static_cast<size_t>(count));
-    at_ += static_cast<size_t>(count);
-    return at_ < bytes_.size();
-  }
-  uint64_t tellg() override { return at_; }
-  void seekg(uint64_t to) override {
-    if (to > bytes_.size()) throw Error("damaged picture (it refers beyond the file's end)");
-    at_ = to;
-  }
-
- private:
-  std::string_view bytes_;
-  size_t at_ = 0;
-};
 
 }  // namespace
 
@@ -75,21 +47,14 @@ std::string encode_exr(const Image& image, const std::vector<std::pair<std::stri
 }
 
 Image read_exr(const std::string& path, uint64_t max_pixels) {
-  const std::string bytes = read_file(path, kHeaderBytes + max_pixels * 3 * sizeof(float));
-  check_exr_header(bytes);
-  Imf::Header::setMaxTileSize(kMaxTileSide, kMaxTileSide);
-  MemoryStream stream(path, bytes);
-  Imf::InputFile file(stream);
-  const Imath::Box2i window = file.header().dataWindow();
+  ExrInput in(path, kHeaderBytes + max_pixels * 3 * sizeof(float));
+  const Imath::Box2i window = in.header().dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
   if (width <= 0 || height <= 0 || width > kMaxSide ||
       static_cast<uint64_t>(width) > max_pixels / static_cast<uint64_t>(height)) {
     throw Error("absurd size " + std::to_string(width) + "x" + std::to_string(height));
   }
-  if (file.header().hasTileDescription() && width * file.header().tileDescription().ySize > kMaxTileRow) {
-    throw Error("absurdly large tiles");
-  }
-  const Imf::ChannelList& channels = file.header().channels();
+  const Imf::ChannelList& channels = in.header().channels();
   const bool grey = channels.findChannel("Y") && !channels.findChannel("R");
   if (!grey && !channels.findChannel("R") && !channels.findChannel("G") && !channels.findChannel("B")) {
     throw Error("no channel R, G, B or Y");
@@ -97,18 +62,17 @@ Image read_exr(const std::string& path, uint64_t max_pixels) {
   Image image;
   image.width = static_cast<uint32_t>(width);
   image.height = static_cast<uint32_t>(height);
-  image.rgb.reserve(static_cast<size_t>(3 * width * height));  // once, so that rows stay where they are
-  Imf::FrameBuffer frame;
-  for (size_t c = 0; c < (grey ? 1 : 3); ++c) {
-    frame.insert(grey ? "Y" : kChannels[c], slice(image, c, window.min.x, window.min.y));
-  }
-  file.setFrameBuffer(frame);
   // Some rows at a time, so that a small file that claims to hold a large picture fails before memory is used for it.
   const int64_t band = std::max<int64_t>(1, kBandPixels / width);
   for (int64_t y = 0; y < height; y += band) {
     const int64_t end = std::min(y + band, height);
     image.rgb.resize(static_cast<size_t>(3 * width * end));
-    file.readPixels(static_cast<int>(window.min.y + y), static_cast<int>(window.min.y + end - 1));
+    Imf::FrameBuffer frame;  // rows that were read may have moved
+    for (size_t c = 0; c < (grey ? 1 : 3); ++c) {
+      frame.insert(grey ? "Y" : kChannels[c], slice(image, c, window.min.x, window.min.y));
+    }
+    in.file().setFrameBuffer(frame);
+    in.file().readPixels(static_cast<int>(window.min.y + y), static_cast<int>(window.min.y + end - 1));
   }
   if (grey) {
     for (size_t i = 0; i < image.rgb.size(); i += 3) image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];

@@ -33,8 +33,7 @@ void write_image(const std::string& path, const Image& image,
 std::string encode_image(const std::string& path, const Image& image,
                          const std::vector<std::pair<std::string, std::string>>& metadata = {});
 
-// Linear radiance; .png is decoded from sRGB. Refuses pictures of more than 2^27 pixels, or 2^26 in a .png. Throws Error with the
-// path.
+// Linear radiance; .png is decoded from sRGB. Refuses pictures of more than kMostPixels. Throws Error with the path.
 Image read_image(const std::string& path);
 
 }  // namespace lanewise

@@ -102,14 +102,20 @@ void NoiseFilm::save(SavedRender& saved) const {
 }
 
 void NoiseFilm::load(const SavedRender& saved) {
+  saved.check_area(area());
   drawn_ = saved.number("drawn");
-  count_ = static_cast<uint32_t>(saved.number("count"));
+  const uint64_t count = saved.number("count");
+  saved.check(drawn_ <= max_drawn_ && count <= max_drawn_ - drawn_, "it has more samples than are asked for");
+  saved.check(count <= kLongestRound, "damaged: its round is too long");
+  count_ = static_cast<uint32_t>(count);
   total_ = static_cast<double>(saved.number("total"));
   left_ = 0;
   for (uint32_t h = 0; h < kHalves; ++h) {
     Half& half = halves_[h];
     const std::string name = "half" + std::to_string(h);
     saved.get_film(name, width_, half.film);
+    const bool more = std::ranges::any_of(half.film.samples, [&](uint64_t n) { return n > drawn_ + count_; });
+    saved.check(!more, "damaged: a pixel has more samples than its round");
     for (size_t c = 0; c < 3; ++c) {
       saved.get<double>(name + ".estimate" + std::to_string(c), width_,
                         [&](size_t i, double value) { half.estimate[i][c] = value; });

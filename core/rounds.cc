@@ -26,9 +26,10 @@ class Rounds {
         film_(size_t{settings.width} * settings.height),
         probes_(settings, settings.estimate_error) {
     if (!control.resume) return;
-    control.resume->get_film("picture", settings.width, film_);
+    control.resume->get_picture(settings, film_);
     probes_.load(*control.resume);
     done_ = least_samples();
+    control.resume->check(probes_.samples() <= done_, "damaged: more probes than samples");
   }
 
   Exposure expose() {

@@ -47,9 +47,22 @@ bool SavedRender::has_film(const std::string& name) const {
   return std::ranges::any_of(channels, [&](const Channel& c) { return c.name == name + ".samples.0"; });
 }
 
+void SavedRender::get_picture(const Settings& settings, Film& film) const {
+  check_area(settings.window());
+  get_film("picture", settings.width, film);
+  const bool more = std::ranges::any_of(film.samples, [&](uint64_t n) { return n > settings.spp; });
+  check(!more, "it has more samples than are asked for");
+}
+
+void SavedRender::check(bool holds, const std::string& otherwise) const {
+  if (!holds) throw UsageError(path + ": cannot resume: " + otherwise);
+}
+
+void SavedRender::check_area(const Window& expected) const { check(area == expected, "it has other pixels"); }
+
 uint64_t SavedRender::number(const std::string& name) const {
   const auto found = numbers.find(name);
-  if (found == numbers.end()) throw Error("no number " + name);
+  if (found == numbers.end()) throw Error(path + ": damaged: no number " + name);
   return found->second;
 }
 
@@ -57,7 +70,7 @@ const std::vector<uint32_t>& SavedRender::find(const std::string& channel) const
   for (const Channel& c : channels) {
     if (c.name == channel && c.words.size() == size_t{area.width} * area.height) return c.words;
   }
-  throw Error("no channel " + channel);
+  throw Error(path + ": damaged: no channel " + channel);
 }
 
 }  // namespace lanewise

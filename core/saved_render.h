@@ -28,6 +28,12 @@ class SavedRender {
   double seconds = 0;                       // spent drawing
   std::map<std::string, uint64_t> numbers;  // of the whole
   uint64_t invalid_samples = 0;             // NaN, infinite or negative; black in the sums
+  std::string path;                         // the file that it was read from, for errors
+
+  // Throws UsageError, naming the file, if a condition does not hold that a render needs to go on with this.
+  void check(bool holds, const std::string& otherwise) const;
+  // It has these pixels.
+  void check_area(const Window& expected) const;
 
   // value(i): of pixel i of the picture (y width + x), of a type of whole words; kept as name.0, name.1, ... lowest first.
   template <class F>
@@ -35,7 +41,7 @@ class SavedRender {
     put_at(area, name, width, value);
   }
 
-  // set(i, value) for every pixel. Throws Error if the channels are not there.
+  // set(i, value) for every pixel. Throws Error, naming the file, if the channels are not there.
   template <class T, class F>
   void get(const std::string& name, uint32_t width, const F& set) const {
     get_at<T>(area, name, width, set);
@@ -45,6 +51,8 @@ class SavedRender {
   void put_film(const std::string& name, uint32_t width, const Film& film) { put_film_at(area, name, width, film); }
   void get_film(const std::string& name, uint32_t width, Film& film) const { get_film_at(area, name, width, film); }
   bool has_film(const std::string& name) const;
+  // The film "picture" of a render with these settings, of as many samples at most as they ask for.
+  void get_picture(const Settings& settings, Film& film) const;
 
   // The same of the window alone.
   void put_own_film(const std::string& name, const Film& film) { put_film_at(own(), name, area.width, film); }

@@ -23,7 +23,7 @@ class Adaptive {
         control_(control),
         intervals_(control),
         film_(size_t{settings.width} * settings.height) {
-    if (control.resume) control.resume->get_film("picture", settings.width, film_);
+    if (control.resume) control.resume->get_picture(settings, film_);
   }
 
   Exposure expose(uint32_t threads) {

@@ -28,6 +28,7 @@ constexpr uint64_t kMaxSpp = uint64_t{1} << 62;
 // A rectangle of pixels of the whole picture; row 0 is at the top.
 struct Window {
   uint32_t x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Window&) const = default;
 };
 
 struct Settings {

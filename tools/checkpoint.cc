@@ -61,9 +61,6 @@ const SavedRender* Checkpoint::resumed(const RenderIdentity& identity) const {
   if (state.numbers.contains(kFirstSample) && state.number(kFirstSample) != settings.first_sample) {
     refuse("it begins with sample " + std::to_string(state.number(kFirstSample)));
   }
-  if (state.has_film("picture") && samples_of(state, settings).second > settings.spp) {
-    refuse("it has more samples than are asked for");
-  }
   return &state;
 }
 

@@ -15,7 +15,6 @@ namespace {
 
 constexpr uint64_t kMaxCount = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t kMaxSide = 65536;
-constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
 constexpr uint32_t kNoiseSpp = 65536;  // -s where --noise is given without it
 
 void add_picture_flags(CLI::App& app, RenderOptions& o) {
@@ -262,7 +261,7 @@ void complete(RenderOptions& o, const CLI::App& app) {
   if (app.count("--lens-radius") > 0 && app.count("--focal-distance") == 0 && !o.settings.autofocus) {
     throw UsageError("--lens-radius (-b): needs --focal-distance (-d) or --autofocus");
   }
-  if (uint64_t{o.resolution.first} * o.resolution.second > kMaxPixels) {
+  if (uint64_t{o.resolution.first} * o.resolution.second > kMostPixels) {
     throw UsageError("--resolution: more than 2^28 pixels");
   }
   if (const auto only = o.settings.only_bounce) {
