@@ -10,12 +10,12 @@
 
 namespace lanewise {
 
-// Draws the pieces on threads until none is left, with pauses to save state(), a SavedRender, where that is due. False if it
+// Draws the pieces, so many workers at a time, until none is left, with pauses to save state(), a SavedRender, where that is due. False if it
 // was left before: the render is stopped, or enough().
 // pieces(): a vector of those that are left. draw(piece, worker, rays): adds the rays that it took to `rays`, and says whether the
 // piece is done; from any thread. report(share): of the pieces that are done, some ten times a second. rays: of all that is drawn.
 template <class Pieces, class DrawPiece, class Report, class State, class Enough>
-bool draw_pieces(uint32_t threads, Intervals& intervals, uint64_t& rays, const Pieces& pieces, const DrawPiece& draw,
+bool draw_pieces(uint32_t workers, Intervals& intervals, uint64_t& rays, const Pieces& pieces, const DrawPiece& draw,
                  const Report& report, const State& state, const Enough& enough) {
   size_t all = 0, left = 0;
   do {
@@ -25,7 +25,7 @@ bool draw_pieces(uint32_t threads, Intervals& intervals, uint64_t& rays, const P
     std::atomic<size_t> done{0};
     const uint64_t rays_before = rays;
     run_workers(
-        threads, some.size(),
+        workers, some.size(),
         [&](size_t item, uint32_t worker) {
           uint64_t traced = 0;
           if (!intervals.pausing() && draw(some[item], worker, traced)) ++done;

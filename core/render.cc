@@ -1,64 +1,44 @@
 #include "core/render.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <memory>
+#include <iterator>
 
+#include "core/local_draw.h"
+#include "core/ranks.h"
 #include "core/schedule.h"
 #include "core/stats.h"
-#include "core/wave.h"
 
 namespace lanewise {
-namespace {
-
-// Adds samples first .. first + count - 1 of all the pixels to their sums, wave by wave.
-void run_batches(Wave& wave, const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums) {
-  const uint64_t epoch_left = (uint64_t{1} << 32) - first % (uint64_t{1} << 32);
-  if (count > epoch_left) {
-    const auto head = static_cast<uint32_t>(epoch_left);
-    run_batches(wave, pixels, first, head, sums);
-    return run_batches(wave, pixels, first + head, count - head, sums);
-  }
-  Batch batch{.pixels = pixels.data(), .samples = count, .first_sample = first};
-  const uint64_t total = uint64_t{count} * pixels.size();
-  for (; batch.first_path < total; batch.first_path += batch.paths) {
-    batch.paths = static_cast<uint32_t>(std::min<uint64_t>(wave.size(), total - batch.first_path));
-    wave.run(batch, sums);
-  }
-}
-
-}  // namespace
 
 RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetail detail) {
   const auto start = std::chrono::steady_clock::now();
   const uint32_t threads = thread_count(plan.settings);
-  std::vector<std::unique_ptr<Wave>> waves(threads);
+  LocalDraw local(plan, threads, detail);
+  std::atomic<uint64_t> invalid{0};
   const auto draw = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
                         uint32_t worker) {
-    std::unique_ptr<Wave>& wave = waves[worker];
-    if (!wave)
-      wave = std::make_unique<Wave>(plan, plan.settings.wave, detail);  // by its own thread, so that its memory is near
-    const uint64_t before = wave->profiler().profile.rays();
-    run_batches(*wave, pixels, first, count, sums);
-    return wave->profiler().profile.rays() - before;
+    const Drawn took = worker < threads ? local.draw(pixels, first, count, sums, worker)
+                                        : control.remote->draw(pixels, first, count, sums, worker - threads);
+    invalid += took.invalid_samples;
+    return took.rays;
   };
-  const RenderControl counting = count_invalid(control, [&] {
-    uint64_t invalid = 0;
-    for (const std::unique_ptr<Wave>& wave : waves) invalid += wave ? wave->profiler().profile.invalid_samples : 0;
-    return invalid;
-  });
-  Exposure exposure = expose(plan.settings, threads, draw, counting);
+  const RenderControl counting = count_invalid(control, [&] { return invalid.load(); });
+  const uint32_t workers = threads + (control.remote ? control.remote->workers() : 0);
+  Exposure exposure = expose(plan.settings, workers, draw, counting);
 
   const auto elapsed = std::chrono::steady_clock::now() - start;
-  std::vector<Profile> profiles;
-  std::vector<std::vector<LoggedCall>> logs;
-  for (const std::unique_ptr<Wave>& wave : waves) {
-    if (!wave) continue;
-    profiles.push_back(wave->profiler().profile);
-    logs.push_back(wave->profiler().log());
-  }
+  std::vector<Profile> profiles = local.profiles();
+  if (control.remote) std::ranges::move(control.remote->profiles(), std::back_inserter(profiles));
   RenderResult result = make_result(std::move(exposure), profiles, control.resume, elapsed);
-  result.logs = std::move(logs);
+  result.logs = local.logs();
+  if (control.remote) {
+    uint64_t samples = 0;  // by this process
+    for (const Profile& profile : local.profiles()) samples += profile.samples;
+    result.stats.ranks = control.remote->stats();
+    result.stats.ranks.insert(result.stats.ranks.begin(), {.threads = threads, .samples = samples});
+  }
   return result;
 }
 

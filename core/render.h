@@ -25,6 +25,14 @@ struct StageStats {
   double lanes_live = 0;  // share of the vector lanes that it ran which held a living path
 };
 
+// What a rank had to do with a render.
+struct RankStats {
+  uint32_t rank = 0;
+  uint32_t threads = 0;
+  uint64_t samples = 0;
+  uint64_t bytes_sent = 0, bytes_received = 0;  // by it; 0 for rank 0, which has none of itself
+};
+
 struct RenderStats {
   uint64_t samples = 0;  // also those of probes
   uint64_t camera_rays = 0;
@@ -38,7 +46,8 @@ struct RenderStats {
   double converged = 1;          // share of the pixels that reached what -a or --noise asks for
   std::optional<ErrorEstimate> error;  // none with -a, of one sample a pixel, or if not asked for
   double seconds = 0;                  // wall clock of rendering alone
-  uint32_t threads = 0;                // that did some of the work
+  uint32_t threads = 0;                // that did some of the work, of all ranks
+  std::vector<RankStats> ranks;        // none if there is one process
 };
 
 struct RenderResult {

@@ -18,6 +18,8 @@ struct Progress {
 using Clock = std::function<double()>;
 double steady_seconds();
 
+class RemoteRanks;
+
 struct RenderControl {
   std::function<void(const Progress&)> progress = nullptr;  // some ten times a second, from the thread that renders
   Clock clock = steady_seconds;
@@ -25,6 +27,7 @@ struct RenderControl {
   const SavedRender* resume = nullptr;   // what to go on with; must outlast the render
   std::function<void(SavedRender&&)> save = nullptr;  // from the thread that renders: while it draws, and at its end
   double save_every = 0;                              // seconds between two saves; 0: only at the end
+  RemoteRanks* remote = nullptr;                      // other processes that draw, too
 };
 
 // When a render draws, and when it pauses to be saved.

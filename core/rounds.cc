@@ -9,6 +9,7 @@
 #include "core/film.h"
 #include "core/pieces.h"
 #include "core/probes.h"
+#include "core/stats.h"
 #include "core/tile.h"
 #include "core/workers.h"
 
@@ -17,9 +18,9 @@ namespace {
 
 class Rounds {
  public:
-  Rounds(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control)
+  Rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control)
       : settings_(settings),
-        threads_(threads),
+        workers_(workers),
         draw_(draw),
         control_(control),
         intervals_(control),
@@ -89,7 +90,7 @@ class Rounds {
     const auto count = static_cast<double>(samples - done_);
     const auto time_is_up = [&] { return timed() && drawing_time_left() <= 0; };
     return draw_pieces(
-        threads_, intervals_, rays_, [&] { return tiles_behind(samples); },
+        workers_, intervals_, rays_, [&] { return tiles_behind(samples); },
         [&](const Tile& tile, uint32_t worker, uint64_t& rays) {
           const uint64_t first = film_.samples[tile.pixels[0]];
           if (first > 0 && time_is_up()) return false;
@@ -116,7 +117,7 @@ class Rounds {
     const size_t all = probes_.pixels().size(), portion = std::max(1u, kWaves * settings_.wave / count);
     std::atomic<uint64_t> rays{0};
     run_workers(
-        threads_, (all + portion - 1) / portion,
+        workers_, (all + portion - 1) / portion,
         [&](size_t item, uint32_t worker) {
           const size_t begin = item * portion, end = std::min(begin + portion, all);
           const auto first = probes_.pixels().begin();
@@ -145,7 +146,7 @@ class Rounds {
     const double begin = intervals_.elapsed();
     const Window window = settings_.window();
     if (probes_.samples() > 1) {
-      error_ = estimate_error(mean_picture(film_, settings_.width, window), probes_, threads_);
+      error_ = estimate_error(mean_picture(film_, settings_.width, window), probes_, thread_count(settings_));
     }
     Exposure exposure{.image = develop(film_, settings_.width, window),
                       .samples = sample_counts(film_, settings_.width, window),
@@ -165,7 +166,7 @@ class Rounds {
   }
 
   const Settings& settings_;
-  uint32_t threads_;
+  uint32_t workers_;
   const Draw& draw_;
   const RenderControl& control_;
   Intervals intervals_;
@@ -185,8 +186,8 @@ uint32_t timed_round(uint64_t done, uint64_t most, double fits) {
   return static_cast<uint32_t>(std::clamp(std::floor(0.9 * fits), 1.0, static_cast<double>(longest)));
 }
 
-Exposure expose_in_rounds(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control) {
-  return Rounds(settings, threads, draw, control).expose();
+Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control) {
+  return Rounds(settings, workers, draw, control).expose();
 }
 
 }  // namespace lanewise

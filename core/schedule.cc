@@ -9,6 +9,7 @@
 #include "core/noise_film.h"
 #include "core/pieces.h"
 #include "core/rounds.h"
+#include "core/stats.h"
 #include "core/tile.h"
 
 namespace lanewise {
@@ -26,10 +27,10 @@ class Adaptive {
     if (control.resume) control.resume->get_picture(settings, film_);
   }
 
-  Exposure expose(uint32_t threads) {
+  Exposure expose(uint32_t workers) {
     uint64_t rays = 0;
     const bool finished = draw_pieces(
-        threads, intervals_, rays, [&] { return tiles_left(); },
+        workers, intervals_, rays, [&] { return tiles_left(); },
         [&](const Tile& tile, uint32_t worker, uint64_t& tile_rays) { return draw_tile(tile, worker, tile_rays); },
         [&](double share) {
           if (control_.progress) control_.progress({share, rays, intervals_.elapsed()});
@@ -106,9 +107,9 @@ class Adaptive {
 // --noise. A round's pixels are dealt out in portions of some waves. Where there is a time, rounds are shortened to it.
 class ToNoise {
  public:
-  ToNoise(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control)
+  ToNoise(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control)
       : settings_(settings),
-        threads_(threads),
+        workers_(workers),
         draw_(draw),
         control_(control),
         intervals_(control),
@@ -160,7 +161,7 @@ class ToNoise {
     if (film_.count() == 0) return true;
     const double samples = film_.round_pixels() * film_.count();
     return draw_pieces(
-        threads_, intervals_, rays_, [&] { return portions(); },
+        workers_, intervals_, rays_, [&] { return portions(); },
         [&](const Portion& portion, uint32_t worker, uint64_t& rays) {
           rays += draw_(portion.pixels, film_.first(portion.half), film_.count(), film_.sums(portion.half), worker);
           film_.drew(portion.half, portion.pixels);
@@ -177,7 +178,7 @@ class ToNoise {
   }
 
   void estimate() {
-    if (settings_.estimate_error) error_ = film_.estimate_error(threads_);
+    if (settings_.estimate_error) error_ = film_.estimate_error(thread_count(settings_));
   }
 
   // samples: drawn in the round so far.
@@ -197,7 +198,7 @@ class ToNoise {
   }
 
   const Settings& settings_;
-  uint32_t threads_;
+  uint32_t workers_;
   const Draw& draw_;
   const RenderControl& control_;
   Intervals intervals_;
@@ -213,10 +214,10 @@ double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Exposure expose(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control) {
-  if (settings.noise > 0) return ToNoise(settings, threads, draw, control).expose();
-  if (settings.adaptive_batch > 0) return Adaptive(settings, draw, control).expose(threads);
-  return expose_in_rounds(settings, threads, draw, control);
+Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control) {
+  if (settings.noise > 0) return ToNoise(settings, workers, draw, control).expose();
+  if (settings.adaptive_batch > 0) return Adaptive(settings, draw, control).expose(workers);
+  return expose_in_rounds(settings, workers, draw, control);
 }
 
 }  // namespace lanewise

@@ -29,6 +29,7 @@ struct Exposure {
   std::optional<ErrorEstimate> error;
 };
 
-Exposure expose(const Settings& settings, uint32_t threads, const Draw& draw, const RenderControl& control = {});
+// workers: how many threads may draw at a time.
+Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control = {});
 
 }  // namespace lanewise

@@ -111,6 +111,7 @@ HWY_INLINE void Add(const Parts& parts, size_t begin, size_t end, Sum& sum) {
 uint32_t Accumulate(const PathState& s, PixelSums* film) {
   const Seen seen = BlackenInvalid(s);
   const Batch& batch = s.batch;
+  const uint32_t* slots = batch.slots ? batch.slots : batch.pixels;
   uint64_t pixel_index = batch.first_path / batch.samples;
   uint32_t left = batch.samples - static_cast<uint32_t>(batch.first_path % batch.samples);  // of the pixel's samples
   Chunk chunk;
@@ -118,7 +119,7 @@ uint32_t Accumulate(const PathState& s, PixelSums* film) {
     const size_t size = std::min<size_t>(kChunk, batch.paths - begin);
     if (!seen.bright) Cut(s, begin, chunk);
     for (size_t i = 0; i < size;) {
-      PixelSums& sums = film[batch.pixels[pixel_index]];
+      PixelSums& sums = film[slots[pixel_index]];
       const size_t end = std::min(size, i + left);
       left -= static_cast<uint32_t>(end - i);
       if (HWY_LIKELY(!seen.bright)) {

@@ -12,7 +12,9 @@
 #include "core/file.h"
 #include "core/film_file.h"
 #include "core/image_io.h"
+#include "core/mpi_messenger.h"
 #include "core/plan.h"
+#include "core/ranks.h"
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/types.h"
@@ -112,7 +114,25 @@ void write_picture(const RenderOptions& o, const RenderResult& result, const std
                {"seed", std::to_string(o.settings.seed)}});
 }
 
+// What the other ranks of an mpirun do. Signals are for rank 0.
+void draw_for_rank_0(const RenderOptions& o, Messenger& messenger) {
+  const StopSignals ignored;
+  const auto load = [&] {
+    choose_isa(o.isa);
+    Scene scene = load_chosen_scene(o);
+    RenderIdentity identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
+    return RankJob{make_plan(std::move(scene), o.settings), std::move(identity)};
+  };
+  serve(messenger, load, {.clock = !o.stats.empty()});
+}
+
 void run_render(const RenderOptions& o, const std::string& command_line) {
+  const std::unique_ptr<Messenger> messenger = mpi_messenger();
+  if (messenger && messenger->rank() > 0) return draw_for_rank_0(o, *messenger);
+  std::optional<RemoteRanks> remote;
+  if (messenger) remote.emplace(*messenger);
+  if (messenger && o.reference != Reference::kNone)
+    throw UsageError("--reference draws in one process, without mpirun");
   check_outputs(o);
   choose_isa(o.isa);
   std::optional<Checkpoint> checkpoint;
@@ -124,9 +144,14 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   progress.show("loading " + o.scene);
   Scene scene = timed(seconds.load, [&] { return load_chosen_scene(o); });
   RenderIdentity identity;
-  if (o.is_part() || checkpoint) identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
+  if (o.is_part() || checkpoint || remote)
+    identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
   progress.show("planning");
   Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
+  if (remote) {
+    progress.show("waiting for the other ranks");
+    remote->meet(identity);
+  }
   if (o.settings.seconds > 0) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     constexpr double kLeast = 1e-9;  // time is up: one sample a pixel
@@ -134,7 +159,8 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   }
   const StopSignals signals;
   RenderControl control{.progress = [&](const Progress& p) { progress.show(p); },
-                        .stop = [] { return StopSignals::received() != 0; }};
+                        .stop = [] { return StopSignals::received() != 0; },
+                        .remote = remote ? &*remote : nullptr};
   FilmFile film;  // of a part, or for the checkpoint
   if (checkpoint) {
     control.resume = checkpoint->resumed(identity);

@@ -71,6 +71,13 @@ std::string stats_json(const RenderReport& r) {
   if (settings.only_bounce) json["only_bounce"] = *settings.only_bounce;
   if (settings.seconds > 0) json["time_budget"] = settings.seconds;
   if (s.error) json["estimated_mrse"] = {{"value", s.error->mrse}, {"low", s.error->low}, {"high", s.error->high}};
+  for (const RankStats& rank : s.ranks) {
+    json["ranks"].push_back({{"rank", rank.rank},
+                             {"threads", rank.threads},
+                             {"samples", rank.samples},
+                             {"bytes_sent", rank.bytes_sent},
+                             {"bytes_received", rank.bytes_received}});
+  }
   json["plan"] = decisions_json(r.plan);
   json["stages"] = nlohmann::ordered_json::array();
   for (const StageStats& stage : s.stages) {
@@ -104,7 +111,8 @@ std::string summary(const RenderReport& r) {
     text += samples_per_pixel(r.options, s) + (limited ? " of at most " : " samples");
   if (limited) text += count_of(settings.spp, "sample");
   text += " per pixel, " + std::string(settings.only_bounce ? "only bounce " : "depth ") +
-          std::to_string(settings.max_depth) + ", " + count_of(s.threads, "thread") + ", " + r.isa + "\n";
+          std::to_string(settings.max_depth) + ", " + count_of(s.threads, "thread") +
+          (s.ranks.empty() ? "" : " of " + count_of(s.ranks.size(), "rank")) + ", " + r.isa + "\n";
   if (adaptive) {
     const std::string aim = settings.noise > 0
                                 ? "standard error of " + short_number(100 * settings.noise) + " %"

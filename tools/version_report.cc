@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/isa.h"
+#include "core/mpi_messenger.h"
 #include "core/render.h"
 #include "tools/libraries.h"
 #include "tools/version.h"
@@ -31,6 +32,7 @@ std::string compiler() {
 std::string version_report() {
   std::vector<std::string> libraries_text;
   for (const Library& library : libraries()) libraries_text.push_back(library.name + " " + library.version);
+  if (!mpi_library().empty()) libraries_text.push_back(mpi_library());
   return std::string("lanewise ") + kVersion + "\n" +                                        //
          "built by " + compiler() + ", " LANEWISE_BUILD_TYPE "\n" +                          //
          "instruction sets: " + joined(compiled_isas()) + "; here " + chosen_isa() + "\n" +  //

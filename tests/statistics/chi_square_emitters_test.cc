@@ -164,7 +164,7 @@ struct Generate {
 
   void operator()(const Plan& plan, const PathState& s, Range range) const {
     PathState batched = s;
-    batched.batch = {&of_pixel, test::kDraws, s.sample[0], 0, range.size()};
+    batched.batch = {.pixels = &of_pixel, .samples = test::kDraws, .first_sample = s.sample[0], .paths = range.size()};
     generate(plan, batched, range);
   }
 };

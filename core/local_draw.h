@@ -1,0 +1,41 @@
+// Draws samples on this process's threads.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/plan.h"
+#include "core/profiler.h"
+#include "core/wave.h"
+
+namespace lanewise {
+
+// What some samples took.
+struct Drawn {
+  uint64_t rays = 0;
+  uint64_t invalid_samples = 0;
+};
+
+class LocalDraw {
+ public:
+  // The plan must outlast it.
+  LocalDraw(const Plan& plan, uint32_t threads, ProfileDetail detail) : plan_(plan), detail_(detail), waves_(threads) {}
+
+  // Adds samples first .. first + count - 1 of each of the pixels to its sums, on the thread that is called `worker`.
+  // slots: pixel j's sums are sums[slots[j]]; null: sums[pixels[j]].
+  Drawn draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums, uint32_t worker,
+             const uint32_t* slots = nullptr);
+
+  // While no thread draws; of each that has.
+  uint64_t invalid_samples() const;
+  std::vector<Profile> profiles() const;
+  std::vector<std::vector<LoggedCall>> logs() const;
+
+ private:
+  const Plan& plan_;
+  ProfileDetail detail_;
+  std::vector<std::unique_ptr<Wave>> waves_;
+};
+
+}  // namespace lanewise
