@@ -1,0 +1,63 @@
+// tools/slurm, on a farm that is a shell script.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/program.h"
+#include "tests/scene_paths.h"
+#include "tests/subprocess.h"
+#include "tests/temporary_folder.h"
+
+namespace lanewise {
+namespace {
+
+// Runs an array's tasks from the last to the first, then says a job's number.
+constexpr const char* kSbatch = R"(#!/usr/bin/env bash
+set -e
+for job; do :; done
+last=$(sed -n 's/^#SBATCH --array=0-//p' "$job")
+for task in $(seq "${last:-0}" -1 0); do SLURM_ARRAY_TASK_ID=$task bash "$job" >&2; done
+echo "$@" >>calls
+echo 7
+)";
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("slurm: parts of a job array, merged, are the bits of one render; only missing ones are drawn again") {
+  if (test::nothing_to_test()) return;
+  const test::TemporaryFolder folder;
+  const auto shell = [&](const std::string& command) {
+    return test::run_process("/bin/sh", {"-c", command}, folder.path());
+  };
+  std::ofstream(folder.file("sbatch")) << kSbatch;
+  std::filesystem::permissions(folder.file("sbatch"), std::filesystem::perms::owner_all);
+  const std::string flags = "'" + test::box() + "' -r 32 24 -q -f ";
+  const std::string farm = "PATH=$PWD:$PATH LANEWISE=" + test::program() + " " +
+                           (test::source_dir() / "tools/slurm").string() + " --parts 5 --samples 33 " + flags;
+  REQUIRE(shell(test::program() + " render -s 33 " + flags + "one.pfm").exit_code == 0);
+  const test::ProcessResult ran = shell(farm + "'a b.pfm' --sbatch '--partition=night --time=1:00'");
+  CAPTURE(ran.err);
+  CHECK(ran.exit_code == 0);
+  CHECK(bytes_of(folder.file("a b.pfm")) == bytes_of(folder.file("one.pfm")));
+  CHECK(bytes_of(folder.file("calls")) ==
+        "--parsable --partition=night --time=1:00 a b.pfm.parts/part.sh\n"
+        "--parsable --partition=night --time=1:00 --dependency=afterok:7 a b.pfm.parts/merge.sh\n");
+
+  const auto part = [&](int i) { return folder.file("a b.pfm.parts/" + std::to_string(i) + ".exr"); };
+  const auto before = std::filesystem::last_write_time(part(1));
+  std::filesystem::remove(part(3));
+  CHECK(shell(farm + "'a b.pfm'").exit_code == 0);
+  CHECK(std::filesystem::exists(part(3)));
+  CHECK(std::filesystem::last_write_time(part(1)) == before);
+
+  CHECK(shell(farm + "x.png -s 5").exit_code == 2);
+  CHECK(shell(farm + "x.png --parts 34").exit_code == 2);
+}
+
+}  // namespace lanewise
