@@ -18,12 +18,12 @@ namespace {
 
 // The first byte of a message.
 enum class Kind : uint8_t {
-  kReady,    // to rank 0: threads, identity
-  kFailed,   // to rank 0: why
-  kDraw,     // to another: desk, first sample, count, pixels as runs
-  kDrawn,    // to rank 0: desk, Drawn, each pixel's sums
-  kEnd,      // to another
-  kProfiles  // to rank 0, the last
+  kReady,   // to rank 0: threads, identity
+  kFailed,  // to rank 0: why
+  kDraw,    // to another: desk, first sample, count, pixels as runs
+  kDrawn,   // to rank 0: desk, Drawn, each pixel's sums
+  kEnd,     // to another
+  kProfile  // to rank 0, the last: what it counted, nothing if it failed
 };
 
 ByteWriter message(Kind kind) {
@@ -59,8 +59,17 @@ std::vector<uint32_t> pixels_of(const std::vector<Run>& runs) {
   return pixels;
 }
 
+// Without the stages that did not run.
 void put(ByteWriter& out, const Profile& profile) {
-  out.put(profile.bounces).put(profile.paths_by_length);
+  out.put(static_cast<uint32_t>(profile.bounces.size()));
+  for (const auto& stages : profile.bounces) {
+    for (const StageCounter& counter : stages) {
+      const bool ran = counter.calls > 0 || counter.rays > 0;
+      out.put(ran);
+      if (ran) out.put(counter);
+    }
+  }
+  out.put(profile.paths_by_length);
   for (const uint64_t n : {profile.waves, profile.calm_waves, profile.wave_nanoseconds, profile.calm_wave_nanoseconds,
                            profile.samples, profile.bounce_rays, profile.shadow_rays, profile.invalid_samples}) {
     out.put(n);
@@ -69,7 +78,11 @@ void put(ByteWriter& out, const Profile& profile) {
 
 Profile get_profile(ByteReader& in) {
   Profile profile;
-  profile.bounces = in.list<decltype(profile.bounces)::value_type>();
+  for (auto bounces = in.get<uint32_t>(); bounces > 0; --bounces) {
+    for (StageCounter& counter : profile.bounces.emplace_back()) {
+      if (in.get<bool>()) counter = in.get<StageCounter>();
+    }
+  }
   profile.paths_by_length = in.list<uint64_t>();
   for (uint64_t* n : {&profile.waves, &profile.calm_waves, &profile.wave_nanoseconds, &profile.calm_wave_nanoseconds,
                       &profile.samples, &profile.bounce_rays, &profile.shadow_rays, &profile.invalid_samples}) {
@@ -149,7 +162,7 @@ void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDe
       messenger.send(kMaster, message(Kind::kFailed).put(std::string(e.what())).take());
     }
   };
-  ByteWriter last = message(Kind::kProfiles);
+  ByteWriter last = message(Kind::kProfile);
   carefully([&] {
     const RankJob job = load();
     const uint32_t threads = thread_count(job.plan.settings);
@@ -172,7 +185,9 @@ void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDe
         });
       }
     }
-    for (const Profile& profile : local.profiles()) put(last, profile);
+    Profile all;
+    for (const Profile& profile : local.profiles()) all.add(profile);
+    put(last, all);
   });
   inbox.wait_until_closed();
   messenger.send(kMaster, last.take());
@@ -227,16 +242,14 @@ Drawn RemoteRanks::draw(const std::vector<uint32_t>& pixels, uint64_t first, uin
 std::vector<Profile> RemoteRanks::profiles() {
   end();
   std::vector<Profile> all;
-  for (const auto& [number, rank] : ranks_) all.insert(all.end(), rank.profiles.begin(), rank.profiles.end());
+  for (const auto& [number, rank] : ranks_) all.push_back(rank.profile);
   return all;
 }
 
 std::vector<RankStats> RemoteRanks::stats() const {
   std::vector<RankStats> stats;
   for (const auto& [number, rank] : ranks_) {
-    uint64_t samples = 0;
-    for (const Profile& profile : rank.profiles) samples += profile.samples;
-    stats.push_back({number, rank.threads, samples, rank.sent, rank.received});
+    stats.push_back({number, rank.threads, rank.profile.samples, rank.sent, rank.received});
   }
   return stats;
 }
@@ -285,9 +298,9 @@ void RemoteRanks::handle(uint32_t from, std::string&& bytes) {
       desk.changed.notify_one();
       break;
     }
-    case Kind::kProfiles:
+    case Kind::kProfile:
       rank.state = State::kEnded;
-      while (!in.empty()) rank.profiles.push_back(get_profile(in));
+      if (!in.empty()) rank.profile = get_profile(in);
       break;
     case Kind::kDraw:
     case Kind::kEnd:

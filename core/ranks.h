@@ -37,7 +37,7 @@ class RemoteRanks {
   // As LocalDraw::draw(), for worker < workers(): returns when it is done. Throws Error, naming the rank, if it fails.
   Drawn draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums, uint32_t worker);
 
-  // Ends them: what their threads have counted, and then what is to be said of each. No draws after that.
+  // Ends them: what each has counted, and then what is to be said of it. No draws after that.
   std::vector<Profile> profiles();
   std::vector<RankStats> stats() const;
 
@@ -47,7 +47,7 @@ class RemoteRanks {
     State state = State::kLoading;
     uint32_t threads = 0;
     RenderIdentity identity;
-    std::vector<Profile> profiles;
+    Profile profile;
     uint64_t sent = 0, received = 0;  // bytes, by it
   };
   // Where a draw's reply is waited for.

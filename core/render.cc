@@ -34,10 +34,12 @@ RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetai
   RenderResult result = make_result(std::move(exposure), profiles, control.resume, elapsed);
   result.logs = local.logs();
   if (control.remote) {
-    uint64_t samples = 0;  // by this process
-    for (const Profile& profile : local.profiles()) samples += profile.samples;
-    result.stats.ranks = control.remote->stats();
-    result.stats.ranks.insert(result.stats.ranks.begin(), {.threads = threads, .samples = samples});
+    std::vector<RankStats>& ranks = result.stats.ranks;
+    ranks.push_back({.threads = threads});
+    for (const Profile& profile : local.profiles()) ranks[0].samples += profile.samples;
+    std::ranges::move(control.remote->stats(), std::back_inserter(ranks));
+    result.stats.threads = 0;
+    for (const RankStats& rank : ranks) result.stats.threads += rank.threads;
   }
   return result;
 }

@@ -60,12 +60,16 @@ def measure(scene, samples, rounds):
 
 
 def bytes_a_pixel(scene):
-    """Of a reply, for a pixel and a round, at numbers of samples of a round: all that the other rank drew, over its pixels."""
+    """That the other rank sends for a pixel and a round, at numbers of samples of a round; what it sends once is taken off by
+    rendering pictures of two sizes."""
     sizes = {}
-    for samples in (1, 16, 256, 4096):
-        stats = render(scene, samples, 2, flags=('--no-estimate', '-p', 100, 100, 128, 96))
-        other = stats['ranks'][1]
-        sizes[samples] = other['bytes_sent'] / (other['samples'] / samples)
+    for samples in (1, 16, 256, 1024):
+        sent, pixels = [], []
+        for crop in ((0, 0, 120, 360), (0, 0, 480, 360)):
+            other = render(scene, samples, 2, flags=('--no-estimate', '-p', *crop))['ranks'][1]
+            sent.append(other['bytes_sent'])
+            pixels.append(other['samples'] / samples)
+        sizes[samples] = (sent[1] - sent[0]) / (pixels[1] - pixels[0])
     return sizes
 
 
