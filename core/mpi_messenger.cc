@@ -24,10 +24,10 @@
 namespace lanewise {
 namespace {
 
-[[maybe_unused]] constexpr uint32_t kNone = ~uint32_t{0};
+constexpr uint32_t kNone = ~uint32_t{0};
 
-// Of the first of these variables that there is: Open MPI's, and those of the process managers of Slurm and MPICH.
-uint32_t launched(std::initializer_list<const char*> names, uint32_t otherwise) {
+// Of the first of these variables that there is.
+uint32_t variable(std::initializer_list<const char*> names, uint32_t otherwise) {
   for (const char* name : names) {
     const char* text = std::getenv(name);
     uint32_t value = 0;
@@ -35,6 +35,9 @@ uint32_t launched(std::initializer_list<const char*> names, uint32_t otherwise) 
   }
   return otherwise;
 }
+
+// Open MPI's, and those of the process managers of Slurm and MPICH.
+uint32_t rank_or(uint32_t otherwise) { return variable({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}, otherwise); }
 
 #ifdef LANEWISE_MPI
 // All calls of MPI while it lives are of one thread, which looks for what has come, and sends what others leave with it.
@@ -109,7 +112,7 @@ class MpiMessenger : public Messenger {
   }
 
   bool receive_one() {
-    std::function<void(uint32_t, std::string&&)> handle;
+    std::function<void(uint32_t, std::string &&)> handle;
     {
       const std::lock_guard lock(mutex_);
       handle = handle_;
@@ -142,7 +145,8 @@ class MpiMessenger : public Messenger {
 
 }  // namespace
 
-uint32_t launched_rank() { return launched({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}, 0); }
+bool is_launched() { return rank_or(kNone) != kNone; }
+uint32_t launched_rank() { return rank_or(0); }
 
 std::string mpi_library() {
 #ifdef LANEWISE_MPI
@@ -158,10 +162,9 @@ std::string mpi_library() {
 
 std::unique_ptr<Messenger> mpi_messenger() {
 #ifdef LANEWISE_MPI
-  const bool is_launched = launched({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}, kNone) != kNone;
-  if (is_launched) return std::make_unique<MpiMessenger>();
+  if (is_launched()) return std::make_unique<MpiMessenger>();
 #else
-  if (launched({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1) > 1)
+  if (variable({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1) > 1)
     throw Error("mpirun has started several processes, but this program is built without MPI");
 #endif
   return nullptr;

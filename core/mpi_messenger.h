@@ -9,7 +9,8 @@
 
 namespace lanewise {
 
-// This process's rank, as mpirun tells it in the environment; 0 without mpirun.
+// Whether mpirun started this process, and its rank, 0 without mpirun: as the environment says.
+bool is_launched();
 uint32_t launched_rank();
 
 // Between all processes of this mpirun; null without mpirun. Throws Error if it has started several

@@ -6,25 +6,41 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/mpi_messenger.h"
+
 namespace lanewise {
 
-ProgressLine::ProgressLine(bool quiet) : enabled_(!quiet && ::isatty(STDERR_FILENO)) {}
+namespace {
+
+std::FILE* find_terminal() {
+  if (::isatty(STDERR_FILENO)) return stderr;
+  return is_launched() ? std::fopen("/dev/tty", "w") : nullptr;
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(bool quiet) : terminal_(quiet ? nullptr : find_terminal()) {}
+
+ProgressLine::~ProgressLine() {
+  clear();
+  if (terminal_ && terminal_ != stderr) std::fclose(terminal_);
+}
 
 void ProgressLine::show(const std::string& text) {
-  if (!enabled_) return;
-  std::fprintf(stderr, "\r%s\033[K", text.c_str());
-  std::fflush(stderr);
+  if (!terminal_) return;
+  std::fprintf(terminal_, "\r%s\033[K", text.c_str());
+  std::fflush(terminal_);
   shown_ = true;
 }
 
 void ProgressLine::show(const Progress& progress) {
-  if (enabled_) show(progress_text(progress));
+  if (terminal_) show(progress_text(progress));
 }
 
 void ProgressLine::clear() {
   if (!shown_) return;
-  std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
+  std::fputs("\r\033[K", terminal_);
+  std::fflush(terminal_);
   shown_ = false;
 }
 

@@ -1,6 +1,8 @@
-// One line on a terminal, updated in place; nothing where standard error is not one.
+// One line on a terminal, updated in place: standard error, or, as mpirun's ranks have none there, the one that it was started from.
+// Nothing where there is none.
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 #include "core/render.h"
@@ -13,7 +15,7 @@ std::string progress_text(const Progress& progress);
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
-  ~ProgressLine() { clear(); }
+  ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
@@ -22,7 +24,7 @@ class ProgressLine {
   void clear();
 
  private:
-  bool enabled_;
+  std::FILE* terminal_;  // null: none
   bool shown_ = false;
 };
 
