@@ -1,6 +1,7 @@
 // A render that is stopped anywhere, saved, and resumed comes to the bits of one that is not.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <vector>
@@ -129,6 +130,50 @@ TEST_CASE("resume: a stopped render's picture is that of the samples it has") {
   }();
   CHECK(develop(film, settings.width, settings.window()).rgb == got.image.rgb);
   CHECK(film.samples == got.samples);
+}
+
+TEST_CASE("resume: what a file could make up is refused, with its name, before anything is drawn") {
+  const Settings settings = many_samples();
+  const Plan plan = make_plan(test::test_scene(), settings);
+  const Plan noise_plan = make_plan(test::test_scene(), to_noise());
+  SavedRender good, good_noise;
+  render_some(plan, 40, nullptr, good);
+  render_some(noise_plan, 40, nullptr, good_noise);
+  const auto refusal = [](const Plan& to_render, SavedRender state, const auto& change) -> std::string {
+    change(state);
+    state.path = "c.exr";
+    try {
+      render(to_render, {.stop = [] { return true; }, .resume = &state});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto words = [](SavedRender& state, const std::string& name) -> std::vector<uint32_t>& {
+    return std::ranges::find(state.channels, name, &SavedRender::Channel::name)->words;
+  };
+  CHECK(refusal(plan, good, [](SavedRender&) {}) == "");
+  CHECK(refusal(noise_plan, good_noise, [](SavedRender&) {}) == "");
+  const std::string pixels = "c.exr: cannot resume: it has other pixels";
+  for (const auto move : {+[](Window& area) { area.y += 1; }, +[](Window& area) { area.x += 60000; },
+                          +[](Window& area) { std::swap(area.width, area.height); }}) {
+    CHECK(refusal(plan, good, [&](SavedRender& s) { move(s.area); }) == pixels);
+    CHECK(refusal(noise_plan, good_noise, [&](SavedRender& s) { move(s.area); }) == pixels);
+  }
+  const std::string more = "c.exr: cannot resume: it has more samples than are asked for";
+  CHECK(refusal(plan, good, [&](SavedRender& s) { words(s, "picture.samples.1")[7] = 1; }) == more);
+  CHECK(refusal(noise_plan, good_noise, [](SavedRender& s) { s.numbers["drawn"] = 1000; }) == more);
+  CHECK(refusal(noise_plan, good_noise, [](SavedRender& s) { s.numbers["count"] = ~uint64_t{0}; }) == more);
+  CHECK(refusal(noise_plan, good_noise, [&](SavedRender& s) {
+          words(s, "half1.samples.1")[7] = 1;
+        }).starts_with("c.exr: cannot resume: damaged"));
+  CHECK(refusal(plan, good, [&](SavedRender& s) {
+          std::ranges::fill(words(s, "probes.samples.1"), 1);
+        }).starts_with("c.exr: cannot resume: damaged"));
+  CHECK(refusal(plan, good, [](SavedRender& s) { s.channels.pop_back(); }).starts_with("c.exr: damaged: no channel"));
+  CHECK(refusal(noise_plan, good_noise, [](SavedRender& s) {
+          s.numbers.erase("drawn");
+        }).starts_with("c.exr: damaged: no number"));
 }
 
 }  // namespace lanewise
