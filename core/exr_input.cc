@@ -42,6 +42,7 @@ class MemoryStream : public Imf::IStream {
 
 ExrInput::ExrInput(const std::string& path, uint64_t max_bytes) {
   if (std::filesystem::is_directory(path)) throw Error("Is a directory");
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) throw Error("not a regular file");
   bytes_ = read_file(path, max_bytes);
   check_exr_header(bytes_);
   Imf::Header::setMaxTileSize(kMaxTileSide, kMaxTileSide);

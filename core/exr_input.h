@@ -18,7 +18,6 @@ class ExrInput {
 
   Imf::InputFile& file() { return *file_; }
   const Imf::Header& header() const { return file_->header(); }
-  uint64_t bytes() const { return bytes_.size(); }
 
  private:
   std::string bytes_;

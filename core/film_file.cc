@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <sstream>
 
 #include "core/exr_input.h"
@@ -21,8 +22,9 @@ namespace lanewise {
 namespace {
 
 constexpr uint64_t kMaxBytes = kMostPixels * 256;
-constexpr uint64_t kMostShrunk = 2048;  // times that zlib makes anything smaller, and then some
-constexpr const char* kFormat = "lanewise film 1";
+constexpr size_t kMostNames = 64;                          // of settings; and of channels, twice that
+constexpr int64_t kBandPixels = 1 << 16, kChunkRows = 16;  // rows that ZIP packs together
+constexpr const char* kFormat = "lanewise film 2";
 constexpr const char* kPrefix = "lanewise.";
 
 using Channels = std::vector<const SavedRender::Channel*>;
@@ -35,30 +37,45 @@ Channels sorted_channels(const SavedRender& state) {
   return channels;
 }
 
-std::string checksum(const Channels& channels) {
-  Fnv fnv;
-  for (const SavedRender::Channel* c : channels) {
-    fnv.add(std::string_view(c->name));
-    fnv.add(c->words);
-  }
-  return fnv.hex();
-}
-
 std::string to_text(const std::vector<SampleRange>& ranges) {
   std::string text;
   for (const SampleRange& r : ranges) text += std::to_string(r.begin) + ":" + std::to_string(r.end) + " ";
   return text;
 }
 
+uint64_t number(const std::string& text) {
+  if (text.empty() || text.size() > 19 || text.find_first_not_of("0123456789") != std::string::npos)
+    throw Error("damaged");
+  return std::stoull(text);
+}
+
 std::vector<SampleRange> ranges_of(const std::string& text) {
   std::vector<SampleRange> ranges;
-  std::istringstream in(text);
-  SampleRange r;
-  for (char colon = 0; in >> r.begin >> colon >> r.end;) {
-    if (colon != ':' || r.begin >= r.end || (!ranges.empty() && r.begin <= ranges.back().end)) throw Error("damaged");
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const size_t colon = std::min(word.find(':'), word.size() - 1);
+    const SampleRange r{number(word.substr(0, colon)), number(word.substr(colon + 1))};
+    if (r.begin >= r.end || (!ranges.empty() && r.begin <= ranges.back().end)) throw Error("damaged");
     ranges.push_back(r);
   }
   return ranges;
+}
+
+// Of all that the file says but R, G and B.
+std::string checksum(const FilmFile& film) {
+  Fnv fnv;
+  const Window& area = film.state.area;
+  for (const uint32_t n : {film.width, film.height, area.x, area.y, area.width, area.height}) fnv.add(uint64_t{n});
+  for (const auto& [name, value] : film.identity) fnv.add(std::string_view(name)), fnv.add(std::string_view(value));
+  for (const auto& [name, value] : film.state.numbers) fnv.add(std::string_view(name)), fnv.add(value);
+  for (const std::string& text : {film.scene, to_text(film.ranges), std::to_string(film.state.seconds)})
+    fnv.add(std::string_view(text));
+  fnv.add(film.state.invalid_samples);
+  for (const SavedRender::Channel* c : sorted_channels(film.state)) {
+    fnv.add(std::string_view(c->name));
+    fnv.add(c->words);
+  }
+  return fnv.hex();
 }
 
 uint64_t samples_in(const std::vector<SampleRange>& ranges) {
@@ -77,16 +94,10 @@ std::string attribute(const Imf::Header& header, const std::string& name) {
   return found->value();
 }
 
-uint64_t number(const std::string& text) {
-  if (text.empty() || text.size() > 19 || text.find_first_not_of("0123456789") != std::string::npos)
-    throw Error("damaged");
-  return std::stoull(text);
-}
-
 double seconds(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0)) throw Error("damaged");
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value < 1e12)) throw Error("damaged");
   return value;
 }
 
@@ -112,29 +123,36 @@ FilmFile read(const std::string& path) {
   film.state.seconds = seconds(attribute(header, "seconds"));
   film.state.invalid_samples = number(attribute(header, "invalid-samples"));
   std::istringstream names(attribute(header, "identity"));
-  for (std::string name; names >> name;) film.identity.emplace_back(name, attribute(header, "is." + name));
+  for (std::string name; names >> name;) {
+    const bool again = std::ranges::any_of(film.identity, [&](const auto& known) { return known.first == name; });
+    if (again || film.identity.size() == kMostNames) throw Error("damaged");
+    film.identity.emplace_back(name, attribute(header, "is." + name));
+  }
   std::istringstream numbers(attribute(header, "numbers"));
   for (std::string name, value; numbers >> name >> value;) film.state.numbers[name] = number(value);
 
-  const uint64_t pixels = static_cast<uint64_t>(width * height);
-  Imf::FrameBuffer frame;
-  uint64_t words = 0;
-  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) words += c.channel().type == Imf::UINT;
-  if (pixels * words * sizeof(uint32_t) / kMostShrunk > in.bytes()) throw Error("absurd size");
-  film.state.channels.reserve(words);
+  if (header.hasTileDescription() || header.compression() != Imf::ZIP_COMPRESSION) throw Error("packed as no film is");
+  film.state.channels.reserve(2 * kMostNames);
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     if (c.channel().type != Imf::UINT || c.channel().xSampling != 1 || c.channel().ySampling != 1) continue;
-    film.state.channels.push_back({c.name(), std::vector<uint32_t>(pixels)});
-    frame.insert(c.name(),
-                 slice(Imf::UINT, film.state.channels.back().words.data(), sizeof(uint32_t), film.state.area));
+    if (film.state.channels.size() == 2 * kMostNames) throw Error("damaged");
+    film.state.channels.push_back({c.name(), {}});
   }
-  in.file().setFrameBuffer(frame);
-  in.file().readPixels(data.min.y, data.max.y);
+  // Some rows at a time, so that a small file that claims to hold a large picture fails before memory is used for it.
+  const int64_t band = std::max<int64_t>(1, kBandPixels / width / kChunkRows) * kChunkRows;
+  for (int64_t y = 0; y < height; y += band) {
+    const int64_t end = std::min(y + band, height);
+    Imf::FrameBuffer frame;  // rows that were read may have moved
+    for (SavedRender::Channel& c : film.state.channels) {
+      c.words.resize(static_cast<size_t>(width * end));
+      frame.insert(c.name, slice(Imf::UINT, c.words.data(), sizeof(uint32_t), film.state.area));
+    }
+    in.file().setFrameBuffer(frame);
+    in.file().readPixels(static_cast<int>(data.min.y + y), static_cast<int>(data.min.y + end - 1));
+  }
 #ifndef LANEWISE_FUZZ  // which has no other way past it
-  if (checksum(sorted_channels(film.state)) != attribute(header, "checksum"))
-    throw Error("damaged (its checksum is wrong)");
+  if (checksum(film) != attribute(header, "checksum")) throw Error("damaged (its checksum is wrong)");
 #endif
-  film.state.path = path;
   return film;
 }
 
@@ -148,22 +166,17 @@ void check_finished(const FilmFile& film) {
 }
 
 void add_ranges(std::vector<SampleRange>& ranges, const std::vector<SampleRange>& others) {
-  for (const SampleRange& other : others) {
-    for (const SampleRange& r : ranges) {
-      if (other.begin < r.end && r.begin < other.end) {
-        throw Error("samples " + std::to_string(std::max(other.begin, r.begin)) + ":" +
-                    std::to_string(std::min(other.end, r.end)) + " are there already");
-      }
-    }
-  }
-  ranges.insert(ranges.end(), others.begin(), others.end());
-  std::ranges::sort(ranges, {}, &SampleRange::begin);
+  std::vector<SampleRange> all;
+  std::ranges::merge(ranges, others, std::back_inserter(all), {}, &SampleRange::begin, &SampleRange::begin);
   std::vector<SampleRange> joined;
-  for (const SampleRange& r : ranges) {
-    if (!joined.empty() && joined.back().end == r.begin) {
+  for (const SampleRange& r : all) {
+    if (joined.empty() || joined.back().end < r.begin) {
+      joined.push_back(r);
+    } else if (joined.back().end == r.begin) {
       joined.back().end = r.end;
     } else {
-      joined.push_back(r);
+      throw Error("samples " + std::to_string(r.begin) + ":" + std::to_string(std::min(joined.back().end, r.end)) +
+                  " are there already");
     }
   }
   ranges = joined;
@@ -198,7 +211,7 @@ std::string encode_film(const FilmFile& film) {
   set("numbers", numbers);
 
   const Channels channels = sorted_channels(film.state);
-  set("checksum", checksum(channels));
+  set("checksum", checksum(film));
   const Image image = develop(film);
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < 3; ++c) {
@@ -226,6 +239,7 @@ FilmFile read_film(const std::string& path, bool finished) {
       check_finished(film);
       std::erase_if(film.state.channels, [](const SavedRender::Channel& c) { return !c.name.starts_with("picture."); });
     }
+    film.state.path = path;
     return film;
   } catch (const std::bad_alloc&) {
     throw;
@@ -236,12 +250,12 @@ FilmFile read_film(const std::string& path, bool finished) {
 }
 
 void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) {
+  Film sum = film.state.own_film("picture");
+  const Film more = other.state.own_film("picture");
   try {
     if (const std::string d = difference(film.identity, other.identity); !d.empty()) throw Error(d);
     if (other.state.area != film.state.area) throw Error("it has other pixels");
     add_ranges(film.ranges, other.ranges);
-    Film sum = film.state.own_film("picture");
-    const Film more = other.state.own_film("picture");
     for (size_t i = 0; i < sum.sums.size(); ++i) {
       sum.sums[i] += more.sums[i];
       sum.samples[i] += more.samples[i];

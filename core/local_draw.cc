@@ -37,12 +37,6 @@ Drawn LocalDraw::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint3
   return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
 }
 
-uint64_t LocalDraw::invalid_samples() const {
-  uint64_t invalid = 0;
-  for (const std::unique_ptr<Wave>& wave : waves_) invalid += wave ? wave->profiler().profile.invalid_samples : 0;
-  return invalid;
-}
-
 std::vector<Profile> LocalDraw::profiles() const {
   std::vector<Profile> profiles;
   for (const std::unique_ptr<Wave>& wave : waves_) {

@@ -28,7 +28,6 @@ class LocalDraw {
              const uint32_t* slots = nullptr);
 
   // While no thread draws; of each that has.
-  uint64_t invalid_samples() const;
   std::vector<Profile> profiles() const;
   std::vector<std::vector<LoggedCall>> logs() const;
 

@@ -1,6 +1,7 @@
 #include "core/mpi_messenger.h"
 
 #include <charconv>
+#include <climits>
 #include <cstdlib>
 #include <cstring>
 
@@ -24,8 +25,6 @@
 namespace lanewise {
 namespace {
 
-constexpr uint32_t kNone = ~uint32_t{0};
-
 // Of the first of these variables that there is.
 uint32_t variable(std::initializer_list<const char*> names, uint32_t otherwise) {
   for (const char* name : names) {
@@ -36,8 +35,10 @@ uint32_t variable(std::initializer_list<const char*> names, uint32_t otherwise) 
   return otherwise;
 }
 
-// Open MPI's, and those of the process managers of Slurm and MPICH.
-uint32_t rank_or(uint32_t otherwise) { return variable({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}, otherwise); }
+// Open MPI's, and that of the process managers of MPICH and Slurm; the last tells of PMIx, for Open MPI, in a job of Slurm.
+uint32_t launched_ranks() {
+  return variable({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", std::getenv("PMIX_RANK") ? "SLURM_NTASKS" : "PMI_SIZE"}, 1);
+}
 
 #ifdef LANEWISE_MPI
 // All calls of MPI while it lives are of one thread, which looks for what has come, and sends what others leave with it.
@@ -63,6 +64,8 @@ class MpiMessenger : public Messenger {
   uint32_t rank() const override { return rank_; }
   uint32_t ranks() const override { return ranks_; }
   void send(uint32_t to, std::string bytes) override {
+    if (bytes.size() > INT_MAX)
+      throw Error("MPI: a message of more than 2 GiB");  // a wave of 2^20 pixels is less than 100 MB
     const std::lock_guard lock(mutex_);
     outbox_.emplace_back(to, std::move(bytes));
     changed_.notify_one();
@@ -145,8 +148,7 @@ class MpiMessenger : public Messenger {
 
 }  // namespace
 
-bool is_launched() { return rank_or(kNone) != kNone; }
-uint32_t launched_rank() { return rank_or(0); }
+bool is_launched() { return launched_ranks() > 1; }
 
 std::string mpi_library() {
 #ifdef LANEWISE_MPI
@@ -161,13 +163,12 @@ std::string mpi_library() {
 }
 
 std::unique_ptr<Messenger> mpi_messenger() {
+  if (!is_launched()) return nullptr;
 #ifdef LANEWISE_MPI
-  if (is_launched()) return std::make_unique<MpiMessenger>();
+  return std::make_unique<MpiMessenger>();
 #else
-  if (variable({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1) > 1)
-    throw Error("mpirun has started several processes, but this program is built without MPI");
+  throw Error("mpirun has started several processes, but this program is built without MPI");
 #endif
-  return nullptr;
 }
 
 }  // namespace lanewise

@@ -9,12 +9,11 @@
 
 namespace lanewise {
 
-// Whether mpirun started this process, and its rank, 0 without mpirun: as the environment says.
+// Whether mpirun started this process as one of several: as the environment says.
 bool is_launched();
-uint32_t launched_rank();
 
-// Between all processes of this mpirun; null without mpirun. Throws Error if it has started several
-// and this program is built without MPI, and whatever MPI reports. At most one may be made in a process; it must be destroyed on
+// Between all processes of this mpirun; null without one of several. Throws Error if there are
+// several and this program is built without MPI; what MPI itself finds wrong ends all of them. At most one may be made in a process; it must be destroyed on
 // the thread that made it, when every rank destroys its own.
 std::unique_ptr<Messenger> mpi_messenger();
 

@@ -80,8 +80,8 @@ struct Step {
 struct Batch {
   const uint32_t* pixels = nullptr;
   const uint32_t* slots = nullptr;  // pixel j's sums are film[slots[j]]; null: film[pixels[j]]
-  uint32_t samples = 0;       // per pixel, > 0
-  uint64_t first_sample = 0;  // the samples do not reach over a multiple of 2^32
+  uint32_t samples = 0;             // per pixel, > 0
+  uint64_t first_sample = 0;        // the samples do not reach over a multiple of 2^32
   uint64_t first_path = 0;
   uint32_t paths = 0;  // at most the wave's size
 };

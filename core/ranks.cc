@@ -5,6 +5,7 @@
 #include <exception>
 #include <numeric>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -147,7 +148,6 @@ std::string drawn(LocalDraw& local, const std::string& request, uint32_t worker,
 }  // namespace
 
 void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDetail detail) {
-  constexpr uint32_t kMaster = 0;
   Inbox inbox;
   messenger.receive([&](uint32_t, std::string&& bytes) {
     const bool ends = kind_of(bytes) == Kind::kEnd;
@@ -157,9 +157,9 @@ void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDe
     try {
       work();
     } catch (const std::bad_alloc&) {
-      messenger.send(kMaster, message(Kind::kFailed).put(std::string("not enough memory")).take());
+      messenger.send(0, message(Kind::kFailed).put(std::string("not enough memory")).take());
     } catch (const std::exception& e) {
-      messenger.send(kMaster, message(Kind::kFailed).put(std::string(e.what())).take());
+      messenger.send(0, message(Kind::kFailed).put(std::string(e.what())).take());
     }
   };
   ByteWriter last = message(Kind::kProfile);
@@ -169,20 +169,25 @@ void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDe
     ByteWriter ready = message(Kind::kReady);
     ready.put(threads);
     for (const auto& [name, value] : job.identity) ready.put(name).put(value);
-    messenger.send(kMaster, ready.take());
+    messenger.send(0, ready.take());
 
     LocalDraw local(job.plan, threads, detail);
     {
       std::vector<std::jthread> pool;
       for (uint32_t worker = 0; worker < threads; ++worker) {
-        pool.emplace_back([&, worker] {
+        const auto work = [&, worker] {
           carefully([&] {
             std::vector<PixelSums> sums;
             std::vector<uint32_t> slots;
-            while (const auto request = inbox.pop())
-              messenger.send(kMaster, drawn(local, *request, worker, sums, slots));
+            while (const auto request = inbox.pop()) messenger.send(0, drawn(local, *request, worker, sums, slots));
           });
-        });
+        };
+        try {
+          pool.emplace_back(work);
+        } catch (const std::system_error&) {
+          if (pool.empty()) throw;
+          break;  // the machine gives no more
+        }
       }
     }
     Profile all;
@@ -190,7 +195,7 @@ void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDe
     put(last, all);
   });
   inbox.wait_until_closed();
-  messenger.send(kMaster, last.take());
+  messenger.send(0, last.take());
 }
 
 RemoteRanks::RemoteRanks(Messenger& messenger) : messenger_(messenger) {
@@ -207,13 +212,16 @@ void RemoteRanks::meet(const RenderIdentity& expected) {
            std::ranges::all_of(ranks_, [](const auto& rank) { return rank.second.state == State::kReady; });
   });
   if (!failure_.empty()) throw Error(failure_);
+  std::vector<std::pair<uint32_t, uint32_t>> desks;  // turn, rank
   for (const auto& [number, rank] : ranks_) {
     const std::string d = difference(expected, rank.identity);
     if (!d.empty()) throw Error("rank " + std::to_string(number) + ": would draw another picture: " + d);
     // Some more than threads: a message is on its way for as long as a thread takes for a few rows.
-    const uint32_t desks = rank.threads + 1 + rank.threads / 8;
-    for (uint32_t i = 0; i < desks; ++i) desks_.emplace_back(number);
+    for (uint32_t i = 0; i < rank.threads + 1 + rank.threads / 8; ++i) desks.emplace_back(i, number);
   }
+  // One each, then another each, so that few tiles are dealt out to many ranks.
+  std::ranges::sort(desks);
+  for (const auto& [turn, number] : desks) desks_.emplace_back(number);
 }
 
 Drawn RemoteRanks::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
@@ -241,6 +249,7 @@ Drawn RemoteRanks::draw(const std::vector<uint32_t>& pixels, uint64_t first, uin
 
 std::vector<Profile> RemoteRanks::profiles() {
   end();
+  if (!failure_.empty()) throw Error(failure_);
   std::vector<Profile> all;
   for (const auto& [number, rank] : ranks_) all.push_back(rank.profile);
   return all;
@@ -278,6 +287,15 @@ void RemoteRanks::handle(uint32_t from, std::string&& bytes) {
   const std::lock_guard lock(mutex_);
   Rank& rank = ranks_[from];
   rank.sent += bytes.size();
+  try {
+    take(from, rank, std::move(bytes));
+  } catch (const std::exception& e) {
+    fail("rank " + std::to_string(from) + ": " + e.what());
+  }
+  changed_.notify_all();
+}
+
+void RemoteRanks::take(uint32_t from, Rank& rank, std::string&& bytes) {
   ByteReader in(bytes);
   switch (in.get<Kind>()) {
     case Kind::kReady:
@@ -292,7 +310,7 @@ void RemoteRanks::handle(uint32_t from, std::string&& bytes) {
       fail("rank " + std::to_string(from) + ": " + in.text());
       break;
     case Kind::kDrawn: {
-      Desk& desk = desks_[in.get<uint32_t>()];
+      Desk& desk = desks_.at(in.get<uint32_t>());
       desk.reply = std::move(bytes);
       desk.waits = false;
       desk.changed.notify_one();
@@ -306,7 +324,6 @@ void RemoteRanks::handle(uint32_t from, std::string&& bytes) {
     case Kind::kEnd:
       break;
   }
-  changed_.notify_all();
 }
 
 }  // namespace lanewise

@@ -29,7 +29,7 @@ class RemoteRanks {
   RemoteRanks(const RemoteRanks&) = delete;
   RemoteRanks& operator=(const RemoteRanks&) = delete;
 
-  // Waits until each has its plan. Throws Error, naming the rank, if one failed, or if it would draw another picture.
+  // Waits until each has its plan. Throws Error, naming the rank, if one failed, or if its identity is another.
   void meet(const RenderIdentity& expected);
 
   // How many draws they can be asked for at a time: more than they have threads, so that none has to wait for the next.
@@ -61,8 +61,9 @@ class RemoteRanks {
   };
 
   void handle(uint32_t from, std::string&& bytes);
-  void send(uint32_t to, std::string bytes);  // with mutex_ held
-  void fail(const std::string& why);          // the same
+  void take(uint32_t from, Rank& rank, std::string&& bytes);  // with mutex_ held
+  void send(uint32_t to, std::string bytes);                  // with mutex_ held
+  void fail(const std::string& why);                          // the same
   void end();
 
   Messenger& messenger_;
@@ -76,7 +77,7 @@ class RemoteRanks {
 
 struct RankJob {
   Plan plan;
-  RenderIdentity identity;
+  RenderIdentity identity;  // what it must share with rank 0
 };
 
 // What the others do: loads, says so, and draws what rank 0 asks for, on as many threads as the plan's settings say, until it ends

@@ -30,7 +30,7 @@ struct RankStats {
   uint32_t rank = 0;
   uint32_t threads = 0;
   uint64_t samples = 0;
-  uint64_t bytes_sent = 0, bytes_received = 0;  // by it; 0 for rank 0, which has none of itself
+  uint64_t bytes_sent = 0, bytes_received = 0;  // by it, to and from rank 0; 0 for rank 0
 };
 
 struct RenderStats {
@@ -46,7 +46,7 @@ struct RenderStats {
   double converged = 1;          // share of the pixels that reached what -a or --noise asks for
   std::optional<ErrorEstimate> error;  // none with -a, of one sample a pixel, or if not asked for
   double seconds = 0;                  // wall clock of rendering alone
-  uint32_t threads = 0;                // that did some of the work, of all ranks
+  uint32_t threads = 0;                // that did some of the work; of ranks, all that they have
   std::vector<RankStats> ranks;        // none if there is one process
 };
 

@@ -11,12 +11,13 @@ namespace {
 constexpr uint8_t kEndOfImage = 0xD9, kHuffmanTables = 0xC4, kFirstRestart = 0xD0;
 
 // The tables of a segment of that length: for each a byte that names it, 16 that say how many codes there are of each length, and
-// a byte for each code. stb reads on to the end of a table that leaves its segment.
+// a byte for each code. stb reads on to the end of a table that leaves its segment; it writes the 257th code out of bounds, and cannot
+// tell the 256th from none (pictures have no use for more than 176).
 bool has_overlong_table(std::string_view tables, size_t length) {
   for (size_t at = 0; at < length;) {
     size_t codes = 0;
     for (size_t i = at + 1; i < at + 17 && i < tables.size(); ++i) codes += static_cast<uint8_t>(tables[i]);
-    if (codes > 256) return true;
+    if (codes > 255) return true;
     at += 17 + codes;
   }
   return false;
@@ -63,7 +64,7 @@ bool has_overlong_chunk(std::string_view bytes) {
 
 void guard_stb(std::string_view bytes) {
   if (bytes.starts_with('\xFF') && has_overlong_huffman_table(bytes)) {
-    throw Error("damaged picture (a Huffman table of more than 256 codes)");
+    throw Error("damaged picture (a Huffman table of more than 255 codes)");
   }
   if (bytes.starts_with("\x89PNG") && has_overlong_chunk(bytes))
     throw Error("damaged picture (a chunk leaves the file)");

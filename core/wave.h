@@ -13,7 +13,7 @@ class Wave {
   // size: the most paths in flight, a multiple of kLanes.
   Wave(const Plan& plan, uint32_t size, ProfileDetail detail = {});
 
-  // Computes the batch's samples (at most size() paths) and adds them to film[pixel].
+  // Computes the batch's samples (at most size() paths) and adds them to their pixels' sums in the film.
   void run(const Batch& batch, PixelSums* film);
 
   uint32_t size() const { return size_; }

@@ -231,7 +231,7 @@ constexpr KernelFields kRouletteFields = {.reads = "pixel sample beta step", .wr
 constexpr KernelBounds kRouletteBounds = {.fields = {ulps("beta", 2.5)}};
 constexpr uint32_t kRouletteBounce = 4;
 
-// Adds the batch's samples to their pixels, film[pixel]: the same sums as by PixelSums::add, which hang on no order. A sample with a
+// Adds the batch's samples to their pixels' sums in the film (Batch::slots says where): the same sums as by PixelSums::add, which hang on no order. A sample with a
 // NaN, infinite or negative channel counts as black. Returns the number of such invalid samples.
 uint32_t accumulate(const PathState& s, PixelSums* film);
 constexpr KernelFields kAccumulateFields = {.reads = "batch result", .writes = ""};

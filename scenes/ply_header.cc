@@ -91,6 +91,10 @@ class Header {
     } else if (keyword == "element" && words_.size() == 3) {
       finish_element();
       element_ = words_[1];
+      // Assimp has room for the first, and writes the second into it.
+      if (!names_.insert(element_ == "tristrips" ? "face" : element_).second) {
+        fail("its element " + lanewise::quoted(element_) + " is there twice");
+      }
       const std::string& count = words_[2];
       const auto [rest, error] = std::from_chars(count.data(), count.data() + count.size(), count_);
       if (error != std::errc() || rest != count.data() + count.size()) fail_line();
@@ -206,7 +210,7 @@ class Header {
   std::vector<Element> elements_;     // that are complete
   uint64_t least_ = 0;                // bytes that one of the element takes
   uint64_t needed_ = 0;               // by the elements before
-  std::set<std::string> coordinates_;
+  std::set<std::string> coordinates_, names_;
 };
 
 }  // namespace

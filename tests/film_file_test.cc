@@ -144,7 +144,7 @@ TEST_CASE("film file: what is damaged, cut off or no film is refused with the fi
     if (i % 2 == 0) {
       bad.resize(bytes.size() * static_cast<size_t>(i) / 60);
     } else {
-      // Behind the header, whose texts are nobody's business: there every byte counts.
+      // Behind the header, some of whose texts are nobody's business: there every byte counts.
       const size_t at = bytes.size() / 2 + rng() % (bytes.size() / 2);
       bad[at] = static_cast<char>(bad[at] ^ (1 << rng() % 8));
     }
@@ -152,6 +152,16 @@ TEST_CASE("film file: what is damaged, cut off or no film is refused with the fi
     CAPTURE(i);
     CHECK(refusal(path).starts_with(path + ": cannot read the film: "));
   }
+  // And these in the header.
+  const std::string attribute(
+      "lanewise.invalid-samples\0string\0\1\0\0\0"
+      "0",
+      37);
+  std::string more = bytes;
+  REQUIRE(more.find(attribute) != std::string::npos);
+  more[more.find(attribute) + attribute.size() - 1] = '1';
+  test::write_text(path, more);
+  CHECK(refusal(path).find("checksum") != std::string::npos);
   FilmFile unfinished = film;
   unfinished.ranges.clear();
   CHECK(refusal(folder.write("checkpoint.exr", unfinished)).find("not done") != std::string::npos);

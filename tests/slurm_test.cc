@@ -47,16 +47,23 @@ TEST_CASE("slurm: parts of a job array, merged, are the bits of one render; only
   CHECK(bytes_of(folder.file("a b.pfm")) == bytes_of(folder.file("one.pfm")));
   CHECK(bytes_of(folder.file("calls")) ==
         "--parsable --partition=night --time=1:00 a b.pfm.parts/part.sh\n"
-        "--parsable --partition=night --time=1:00 --dependency=afterok:7 a b.pfm.parts/merge.sh\n");
+        "--parsable --partition=night --time=1:00 --dependency=afterok:7 --kill-on-invalid-dep=yes a "
+        "b.pfm.parts/merge.sh\n");
 
-  const auto part = [&](int i) { return folder.file("a b.pfm.parts/" + std::to_string(i) + ".exr"); };
-  const auto before = std::filesystem::last_write_time(part(1));
-  std::filesystem::remove(part(3));
+  const auto part = [&](const char* range) { return folder.file(std::string("a b.pfm.parts/") + range + ".exr"); };
+  const auto before = std::filesystem::last_write_time(part("6-13"));
+  std::filesystem::remove(part("19-26"));
   CHECK(shell(farm + "'a b.pfm'").exit_code == 0);
-  CHECK(std::filesystem::exists(part(3)));
-  CHECK(std::filesystem::last_write_time(part(1)) == before);
+  CHECK(std::filesystem::exists(part("19-26")));
+  CHECK(std::filesystem::last_write_time(part("6-13")) == before);
+
+  CHECK(shell(farm + "'a b.pfm' -m 3").err.find("parts of another render") != std::string::npos);
+  CHECK(shell(farm + "'a b.pfm' --parts 3 --samples 40").exit_code == 0);  // of the same, and other samples
+  REQUIRE(shell(test::program() + " render -s 40 " + flags + "forty.pfm").exit_code == 0);
+  CHECK(bytes_of(folder.file("a b.pfm")) == bytes_of(folder.file("forty.pfm")));
 
   CHECK(shell(farm + "x.png -s 5").exit_code == 2);
+  CHECK(shell(farm + "x.png --stats=s.json").exit_code == 2);
   CHECK(shell(farm + "x.png --parts 34").exit_code == 2);
 }
 

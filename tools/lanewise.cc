@@ -7,7 +7,6 @@
 #include <new>
 #include <string>
 
-#include "core/mpi_messenger.h"
 #include "core/types.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
@@ -61,7 +60,6 @@ void run(int argc, char** argv) {
 
 // Always one line: file names may hold anything.
 int complain(std::string text, int exit_code) {
-  if (lanewise::launched_rank() > 0) return exit_code;  // rank 0 says the same
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   }

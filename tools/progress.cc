@@ -14,7 +14,13 @@ namespace {
 
 std::FILE* find_terminal() {
   if (::isatty(STDERR_FILENO)) return stderr;
-  return is_launched() ? std::fopen("/dev/tty", "w") : nullptr;
+  std::FILE* terminal = is_launched() ? std::fopen("/dev/tty", "w") : nullptr;
+  // Not where mpirun runs in the background, and something else has the terminal.
+  if (terminal && ::tcgetpgrp(::fileno(terminal)) != ::getpgid(::getppid())) {
+    std::fclose(terminal);
+    return nullptr;
+  }
+  return terminal;
 }
 
 }  // namespace

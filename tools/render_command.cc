@@ -114,21 +114,28 @@ void write_picture(const RenderOptions& o, const RenderResult& result, const std
                {"seed", std::to_string(o.settings.seed)}});
 }
 
+// What all ranks must agree in.
+RenderIdentity of_rank(RenderIdentity identity, const std::string& command_line) {
+  identity.emplace_back("version", kVersion);
+  identity.emplace_back("command", command_line);
+  return identity;
+}
+
 // What the other ranks of an mpirun do. Signals are for rank 0.
-void draw_for_rank_0(const RenderOptions& o, Messenger& messenger) {
+void draw_for_rank_0(const RenderOptions& o, Messenger& messenger, const std::string& command_line) {
   const StopSignals ignored;
   const auto load = [&] {
     choose_isa(o.isa);
     Scene scene = load_chosen_scene(o);
     RenderIdentity identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
-    return RankJob{make_plan(std::move(scene), o.settings), std::move(identity)};
+    return RankJob{make_plan(std::move(scene), o.settings), of_rank(std::move(identity), command_line)};
   };
   serve(messenger, load, {.clock = !o.stats.empty()});
 }
 
 void run_render(const RenderOptions& o, const std::string& command_line) {
   const std::unique_ptr<Messenger> messenger = mpi_messenger();
-  if (messenger && messenger->rank() > 0) return draw_for_rank_0(o, *messenger);
+  if (messenger && messenger->rank() > 0) return draw_for_rank_0(o, *messenger, command_line);
   std::optional<RemoteRanks> remote;
   if (messenger) remote.emplace(*messenger);
   if (messenger && o.reference != Reference::kNone)
@@ -150,7 +157,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
   if (remote) {
     progress.show("waiting for the other ranks");
-    remote->meet(identity);
+    remote->meet(of_rank(identity, command_line));
   }
   if (o.settings.seconds > 0) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;

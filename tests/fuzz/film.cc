@@ -10,7 +10,7 @@
 namespace lanewise::fuzz {
 namespace {
 
-constexpr uint64_t kMostPixels = 32 * 32, kMostSamples = 64;
+constexpr uint64_t kMostToRender = 32 * 32, kMostSamples = 64;
 
 // A mirror below a grey sky: that the file is of this scene is for others to check.
 Plan small_plan(const FilmFile& film) {
@@ -42,10 +42,11 @@ void merge(const std::string& path) {
 
 void resume(const std::string& path) {
   const FilmFile film = read_film(path, false);
-  if (uint64_t{film.width} * film.height > kMostPixels) return;
+  if (uint64_t{film.width} * film.height > kMostToRender) return;
   Plan plan = small_plan(film);
   render(plan, {.resume = &film.state});
   if (film.state.has_film("half0")) return;
+  plan.settings.crop = {};
   plan.settings.adaptive_batch = 8;
   render(plan, {.resume = &film.state});
 }
