@@ -20,7 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw Error(path + ": cannot write: " + std::generic_category().message(error));
+  const std::string what = path + ": cannot write: " + std::generic_category().message(error);
+  if (error == EPIPE) throw BrokenPipe(what);
+  throw Error(what);
 }
 
 // The file that a path stands for. Links to devices and pipes stay as they are: /dev/stdout has no other name.

@@ -5,7 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "core/types.h"
+
 namespace lanewise {
+
+// Thrown where nobody reads any more what is written to a pipe, which is for whoever reads it to know and no fault of a file.
+struct BrokenPipe : Error {
+  using Error::Error;
+};
 
 // Throws Error, naming the path, if no file can be written there (no such folder, a folder itself, no permission). For
 // the command line to call before a long render; creates nothing.
@@ -13,7 +20,8 @@ void check_writable(const std::string& path);
 
 // Writes to a temporary file beside the path, syncs it and renames it over the path, so that a file that stands there
 // is replaced whole or left as it is. Links are followed (one that leads nowhere is replaced); devices and pipes are
-// written to directly. Throws Error with the path and the reason, and leaves no temporary file behind.
+// written to directly. Throws Error (BrokenPipe for such a pipe) with the path and the reason, and leaves no temporary file
+// behind.
 void write_file(const std::string& path, std::string_view bytes);
 
 // The bytes of a file of at most max_bytes. Throws Error with the reason, without the path.

@@ -2,16 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <random>
-#include <thread>
 
 #include "tests/program.h"
+#include "tests/running.h"
 #include "tests/subprocess.h"
 #include "tests/temporary_folder.h"
 
@@ -20,6 +18,7 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 using test::ProcessResult;
+using test::Running;
 using test::TemporaryFolder;
 
 ProcessResult lanewise(const TemporaryFolder& folder, const Arguments& arguments) {
@@ -31,40 +30,6 @@ Arguments render(const Arguments& more, const std::string& output = "box.pfm") {
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
-
-// The program at work, with its standard error in the file err.
-class Running {
- public:
-  Running(const TemporaryFolder& folder, const Arguments& arguments) : folder_(folder) {
-    std::vector<char*> argv = {const_cast<char*>("lanewise")};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    const std::string program = test::program(), err = folder.file("err");
-    child_ = ::fork();
-    if (child_ != 0) return;
-    if (!std::freopen(err.c_str(), "w", stderr) || ::chdir(folder.path().c_str()) != 0) ::_exit(127);
-    ::alarm(60);
-    ::execv(program.c_str(), argv.data());
-    ::_exit(127);
-  }
-
-  void wait_for(const std::string& file) const {
-    for (int i = 0; i < 6000 && !std::filesystem::exists(folder_.file(file)); ++i) sleep(std::chrono::milliseconds(5));
-  }
-  static void sleep(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
-
-  // Sends it the signal: 128 + the one that ended it, or its exit code.
-  int end(int signal) {
-    ::kill(child_, signal);
-    int status = 0;
-    ::waitpid(child_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
- private:
-  const TemporaryFolder& folder_;
-  pid_t child_;
-};
 
 const Arguments kLong = {"-s", "1000000000", "--checkpoint", "c.exr", "--every", "100ms"};
 

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -27,9 +28,10 @@ inline std::string read_back(FILE* file) {
   return text;
 }
 
-// In the folder given, with empty standard input; killed after a minute. program: an absolute path.
+// In the folder given, with empty standard input; killed after a minute. program: an absolute path. prepare: called in its process
+// before it begins, if given; to take something away from it.
 inline ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
-                                 const std::filesystem::path& folder) {
+                                 const std::filesystem::path& folder, const std::function<void()>& prepare = nullptr) {
   FILE* out = std::tmpfile();
   FILE* err = std::tmpfile();
   FILE* in = std::fopen("/dev/null", "r");
@@ -45,7 +47,9 @@ inline ProcessResult run_process(const std::string& program, const std::vector<s
     ::dup2(::fileno(out), STDOUT_FILENO);
     ::dup2(::fileno(err), STDERR_FILENO);
     ::alarm(60);
-    if (::chdir(folder.c_str()) == 0) ::execv(argv[0], argv.data());
+    if (::chdir(folder.c_str()) != 0) ::_exit(127);
+    if (prepare) prepare();
+    ::execv(argv[0], argv.data());
     ::_exit(127);
   }
   int status = 0;

@@ -1,5 +1,6 @@
 // The program: finds the command, and turns every failure into one line and an exit code: 1 for files and the machine,
-// 2 for the command line.
+// 2 for the command line. A pipe that nobody reads any more ends it as it ends other programs, by SIGPIPE and in silence, but
+// only when all files are written.
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -7,10 +8,12 @@
 #include <new>
 #include <string>
 
+#include "core/file.h"
 #include "core/types.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
 #include "tools/script_command.h"
+#include "tools/standard_streams.h"
 #include "tools/stop_signals.h"
 #include "tools/version_report.h"
 
@@ -55,7 +58,6 @@ void run(int argc, char** argv) {
     throw UsageError(e.what());
   }
   if (argc == 1) std::cout << app.help();
-  if (!std::cout.flush()) throw Error("standard output: cannot write");
 }
 
 // Always one line: file names may hold anything.
@@ -72,11 +74,17 @@ int complain(std::string text, int exit_code) {
 
 int main(int argc, char** argv) {
   using lanewise::complain;
-  // A file that outgrows its limit is then an error of its write like any other.
+  lanewise::open_standard_streams();
+  // A file that outgrows its limit, and a pipe that nobody reads, are then errors of a write like any other.
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   try {
+    lanewise::StandardOutput output;
     lanewise::run(argc, argv);
+    output.finish();
     return 0;
+  } catch (const lanewise::BrokenPipe&) {
+    lanewise::die_of(SIGPIPE);
   } catch (const lanewise::Stopped& stopped) {
     lanewise::die_of(stopped.signal);
   } catch (const lanewise::UsageError& e) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -49,6 +50,8 @@ void run_script(const std::string& name, const std::vector<std::string>& argumen
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   std::cout.flush();
+  for (const int signal : {SIGXFSZ, SIGPIPE})
+    std::signal(signal, SIG_DFL);  // that main() ignores: not what others expect
   ::execv(kPython, argv.data());
   throw Error(std::string(kPython) + ": " + std::strerror(errno));
 }
