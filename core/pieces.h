@@ -28,7 +28,10 @@ bool draw_pieces(uint32_t workers, Intervals& intervals, uint64_t& rays, const P
         workers, some.size(),
         [&](size_t item, uint32_t worker) {
           uint64_t traced = 0;
-          if (!intervals.pausing() && draw(some[item], worker, traced)) ++done;
+          if (!intervals.pausing() && draw(some[item], worker, traced)) {
+            ++done;
+            intervals.drew();
+          }
           return traced;
         },
         [&](const Progress& pass) {

@@ -1,6 +1,7 @@
 // What goes on around a render while it draws: progress, an end before its time, and saving what there is.
 #pragma once
 
+#include <atomic>
 #include <functional>
 
 #include "core/saved_render.h"
@@ -41,8 +42,11 @@ class Intervals {
   double elapsed() const { return control_.clock() - start_; }  // of drawing, with what was before a resume
   bool stopped() const { return control_.stop && control_.stop(); }
   bool save_due() const {
-    return control_.save && control_.save_every > 0 && control_.clock() - saved_ >= control_.save_every;
+    return drew_ && control_.save && control_.save_every > 0 && control_.clock() - saved_ >= control_.save_every;
   }
+  // From any thread, when some work is done. Without any since the last save no other is due: however short the time between
+  // two, a render gets on.
+  void drew() { drew_ = true; }
   // From any thread: that no further work is to begin, for now or for good.
   bool pausing() const { return stopped() || save_due(); }
 
@@ -54,12 +58,14 @@ class Intervals {
     saved.seconds = elapsed();
     control_.save(std::move(saved));
     saved_ = control_.clock();
+    drew_ = false;
   }
 
  private:
   const RenderControl& control_;
   double start_;
   double saved_;
+  std::atomic<bool> drew_{false};
 };
 
 }  // namespace lanewise

@@ -87,6 +87,7 @@ class Adaptive {
       const auto count = static_cast<uint32_t>(std::min<uint64_t>(settings_.adaptive_batch, settings_.spp - done));
       rays += draw_(pixels, settings_.first_sample + done, count, film_.sums.data(), worker);
       for (const uint32_t pixel : pixels) film_.samples[pixel] = done + count;
+      intervals_.drew();
     }
   }
 

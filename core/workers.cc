@@ -46,14 +46,25 @@ void run_workers(uint32_t threads, size_t items, const std::function<uint64_t(si
   };
 
   std::vector<std::jthread> pool;
-  for (uint32_t worker = 0; worker < threads; ++worker) pool.emplace_back(work, worker);
-  {
+  pool.reserve(threads);
+  try {
+    while (pool.size() < threads) pool.emplace_back(work, static_cast<uint32_t>(pool.size()));
+  } catch (const std::exception&) {
+    // The machine gives no more, or has no memory for them: those that there are do the work, at worst this one alone.
+    const std::lock_guard lock(mutex);
+    running -= threads - static_cast<uint32_t>(std::max<size_t>(pool.size(), 1));
+  }
+  if (pool.empty()) work(0);
+  try {
     std::unique_lock lock(mutex);
     while (!stopped.wait_for(lock, kBetweenReports, [&] { return running == 0; })) {
       lock.unlock();
       report();
       lock.lock();
     }
+  } catch (...) {
+    next = items;
+    throw;
   }
   pool.clear();
   if (failure) std::rethrow_exception(failure);

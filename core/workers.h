@@ -9,9 +9,9 @@
 
 namespace lanewise {
 
-// Runs body(item, worker) for items 0 .. items - 1 on `threads` threads, or fewer if there are fewer items, each item once, in rising order of their
-// start. body returns the number of rays it traced. progress is called from the calling thread. If a body throws, no
-// further item starts, and the first exception is thrown again here.
+// Runs body(item, worker) for items 0 .. items - 1 on `threads` threads, or fewer if there are fewer items or the machine gives
+// fewer threads, each item once, in rising order of their start. body returns the number of rays it traced. progress is called
+// from the calling thread. If a body or progress throws, no further item starts, and the first exception is thrown again here.
 void run_workers(uint32_t threads, size_t items, const std::function<uint64_t(size_t item, uint32_t worker)>& body,
                  const std::function<void(const Progress&)>& progress);
 
