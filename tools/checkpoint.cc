@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <utility>
 
 #include "core/types.h"
@@ -69,10 +70,12 @@ void Checkpoint::write(const FilmFile& film) {
   failure_.clear();
   try {
     write_file(options_.checkpoint, encode_film(film));
+  } catch (const std::bad_alloc&) {
+    failure_ = options_.checkpoint + ": cannot write: not enough memory";
   } catch (const std::exception& e) {
     failure_ = e.what();
-    if (!failed_before) std::cerr << "lanewise: warning: " << failure_ << "; rendering goes on\n";
   }
+  if (!failure_.empty() && !failed_before) std::cerr << "lanewise: warning: " << failure_ << "; rendering goes on\n";
 }
 
 }  // namespace lanewise
