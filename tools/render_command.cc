@@ -27,6 +27,7 @@
 #include "tools/rate_picture.h"
 #include "tools/render_options.h"
 #include "tools/render_report.h"
+#include "tools/rescue.h"
 #include "tools/stop_signals.h"
 #include "tools/version.h"
 
@@ -105,13 +106,13 @@ std::string farewell(const RenderOptions& o, const RenderStats& stats, int signa
   return text + "\n";
 }
 
-void write_picture(const RenderOptions& o, const RenderResult& result, const std::string& command_line) {
-  write_image(o.output, result.image,
-              {{"software", std::string("lanewise ") + kVersion},
-               {"command", command_line},
-               {"scene", o.scene},
-               {"spp", samples_per_pixel(o, result.stats)},
-               {"seed", std::to_string(o.settings.seed)}});
+std::string encode_picture(const RenderOptions& o, const RenderResult& result, const std::string& command_line) {
+  return encode_image(o.output, result.image,
+                      {{"software", std::string("lanewise ") + kVersion},
+                       {"command", command_line},
+                       {"scene", o.scene},
+                       {"spp", samples_per_pixel(o, result.stats)},
+                       {"seed", std::to_string(o.settings.seed)}});
 }
 
 // What all ranks must agree in.
@@ -182,20 +183,25 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
   }
   const RenderResult result = timed(seconds.render, [&] { return render_with(o, plan, control); });
 
+  Rescue files;
   timed(seconds.write, [&] {
-    if (!o.is_part()) write_picture(o, result, command_line);
-    if (o.is_part() && !result.stats.stopped) write_file(o.output, encode_film(film));
+    if (!o.is_part()) files.write(o.output, encode_picture(o, result, command_line));
+    if (o.is_part() && !result.stats.stopped) files.write(o.output, encode_film(film));
     return true;
   });
   if (!o.rate.empty()) {
-    write_image(o.rate, rate_picture(o.rate, result.samples, result.image.width, result.image.height));
+    const Image rate = rate_picture(o.rate, result.samples, result.image.width, result.image.height);
+    files.write(o.rate, encode_image(o.rate, rate));
   }
   const std::vector<Decision> decisions = explain(plan);
   const RenderReport report{o, result.stats, seconds, isa_name(o.reference), command_line, decisions};
-  if (!o.stats.empty()) write_file(o.stats, stats_json(report));
+  if (!o.stats.empty()) files.write(o.stats, stats_json(report));
+  if (checkpoint && !checkpoint->failure().empty()) {
+    files.keep(o.checkpoint, encode_film(film), checkpoint->failure());
+  }
 
   progress.clear();
-  if (checkpoint && !checkpoint->failure().empty()) throw Error(checkpoint->failure());
+  files.finish();
   if (result.stats.stopped) {
     std::cerr << farewell(o, result.stats, StopSignals::received());
     throw Stopped{StopSignals::received()};
