@@ -26,13 +26,15 @@ TEST_CASE("workers: the first failure is thrown again, and no further item start
           [&](size_t item, uint32_t) -> uint64_t {
             ++started;
             if (item == 0) {
+              while (started < threads) std::this_thread::yield();
               failed = true;
               throw Error("first");
             }
             while (!failed) std::this_thread::yield();
-            // Those that were under way fail too, later.
+            // Of those that are under way some fail too, later; the others would go on.
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
-            throw Error("later");
+            if (item % 2 == 1) throw Error("later");
+            return 0;
           },
           nullptr);
     } catch (const Error& e) {
