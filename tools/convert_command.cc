@@ -42,13 +42,18 @@ Target target_of(const std::string& output) {
   throw UsageError("--output: " + output + " ends in neither .xml (Mitsuba 3) nor .pbrt (pbrt-v4)");
 }
 
-// The scene's file comes last: where it stands, all that it names does.
+// The scene's file comes last: where it stands, all that it names does. A folder that is made for nothing is taken away again.
 void write_scene(const std::string& output, const fs::path& folder, const ExportedScene& exported) {
   std::error_code error;
-  if (!exported.files.empty()) fs::create_directory(folder, error);
+  const bool made = !exported.files.empty() && fs::create_directory(folder, error);
   if (error) throw Error(folder.string() + ": cannot write: " + error.message());
-  for (const ExportedFile& file : exported.files) write_file((folder.parent_path() / file.path).string(), file.bytes);
-  write_file(output, exported.text);
+  try {
+    for (const ExportedFile& file : exported.files) write_file((folder.parent_path() / file.path).string(), file.bytes);
+    write_file(output, exported.text);
+  } catch (...) {
+    if (made) fs::remove_all(folder, error);
+    throw;
+  }
 }
 
 void run_convert(const ConvertOptions& o) {
