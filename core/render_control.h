@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <mutex>
 
 #include "core/saved_render.h"
 
@@ -31,18 +32,26 @@ struct RenderControl {
   RemoteRanks* remote = nullptr;                      // other processes that draw, too
 };
 
-// When a render draws, and when it pauses to be saved.
+// When a render draws, and when it pauses to be saved. The clock may stand still, and may jump: what it falls back by is taken for
+// no time at all, so that neither an end nor a save is put off by it.
 class Intervals {
  public:
   explicit Intervals(const RenderControl& control)
-      : control_(control),
-        start_(control.clock() - (control.resume ? control.resume->seconds : 0)),
-        saved_(control.clock()) {}
+      : control_(control), last_(control.clock()), passed_(control.resume ? control.resume->seconds : 0) {
+    saved_ = passed_;
+  }
 
-  double elapsed() const { return control_.clock() - start_; }  // of drawing, with what was before a resume
+  // Seconds of drawing, with what was before a resume; never less than the last time. From any thread.
+  double elapsed() const {
+    const std::lock_guard lock(mutex_);
+    const double now = control_.clock();
+    if (now > last_) passed_ += now - last_;
+    last_ = now;
+    return passed_;
+  }
   bool stopped() const { return control_.stop && control_.stop(); }
   bool save_due() const {
-    return drew_ && control_.save && control_.save_every > 0 && control_.clock() - saved_ >= control_.save_every;
+    return drew_ && control_.save && control_.save_every > 0 && elapsed() - saved_ >= control_.save_every;
   }
   // From any thread, when some work is done. Without any since the last save no other is due: however short the time between
   // two, a render gets on.
@@ -57,14 +66,16 @@ class Intervals {
     SavedRender saved = state();
     saved.seconds = elapsed();
     control_.save(std::move(saved));
-    saved_ = control_.clock();
+    saved_ = elapsed();
     drew_ = false;
   }
 
  private:
   const RenderControl& control_;
-  double start_;
-  double saved_;
+  mutable std::mutex mutex_;  // guards the two below
+  mutable double last_;       // that the clock has told
+  mutable double passed_;
+  double saved_ = 0;  // when
   std::atomic<bool> drew_{false};
 };
 

@@ -162,7 +162,7 @@ class Rounds {
     const double seconds = intervals_.elapsed();
     const double fraction =
         std::max(samples / static_cast<double>(settings_.spp), timed() ? seconds / settings_.seconds : 0);
-    control_.progress({fraction, rays_, seconds, error_ ? error_->mrse : -1});
+    control_.progress({std::min(fraction, 1.0), rays_, seconds, error_ ? error_->mrse : -1});
   }
 
   const Settings& settings_;

@@ -187,9 +187,9 @@ class ToNoise {
     if (!control_.progress) return;
     const double seconds = intervals_.elapsed();
     // The first round alone tells how many there will be.
-    const double fraction = film_.drawn() > 0 ? (film_.drawn() + samples) / film_.expected() : 0;
-    control_.progress({std::max(fraction, settings_.seconds > 0 ? seconds / settings_.seconds : 0), rays_, seconds,
-                       error_ ? error_->mrse : -1});
+    const double drawn = film_.drawn() > 0 ? (film_.drawn() + samples) / film_.expected() : 0;
+    const double fraction = std::max(drawn, settings_.seconds > 0 ? seconds / settings_.seconds : 0);
+    control_.progress({std::min(fraction, 1.0), rays_, seconds, error_ ? error_->mrse : -1});
   }
 
   SavedRender state() const {
