@@ -179,7 +179,7 @@ TEST_CASE("ranks: stopped and resumed with other ranks, the same bits") {
     std::atomic<int> asked{0};
     SavedRender after;
     const RenderResult got =
-        render(make_plan(test::test_scene(), settings), {.stop = [&] { return ++asked > 30; },
+        render(make_plan(test::test_scene(), settings), {.stop = [&] { return ++asked > 5; },
                                                          .resume = begun ? &state : nullptr,
                                                          .save = [&](SavedRender&& saved) { after = std::move(saved); },
                                                          .remote = &remote});
