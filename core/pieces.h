@@ -10,8 +10,8 @@
 
 namespace lanewise {
 
-// Draws the pieces, so many workers at a time, until none is left, with pauses to save state(), a SavedRender, where that is due. False if it
-// was left before: the render is stopped, or enough().
+// Draws the pieces, so many workers at a time, until none is left, with pauses to save state(), a SavedRender, where that is due.
+// False if it was left before: the render is stopped, or enough().
 // pieces(): a vector of those that are left. draw(piece, worker, rays): adds the rays that it took to `rays`, and says whether the
 // piece is done; from any thread. report(share): of the pieces that are done, some ten times a second. rays: of all that is drawn.
 template <class Pieces, class DrawPiece, class Report, class State, class Enough>

@@ -1,6 +1,6 @@
-// One render by several processes, its ranks. Each has the whole scene and compiles the same plan. Rank 0 alone has the film: it deals
-// out pixels and sample numbers to its own threads and to the other ranks as they get free, and adds the sums that come back. Sums
-// are exact, so the picture is the same bits whoever draws what.
+// One render by several processes, its ranks. Each has the whole scene and compiles the same plan. Rank 0 alone has the film: it
+// deals out pixels and sample numbers to its own threads and to the other ranks as they get free, and adds the sums that come back.
+// Sums are exact, so the picture is the same bits whoever draws what.
 #pragma once
 
 #include <condition_variable>

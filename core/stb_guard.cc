@@ -11,8 +11,8 @@ namespace {
 constexpr uint8_t kEndOfImage = 0xD9, kHuffmanTables = 0xC4, kFirstRestart = 0xD0;
 
 // The tables of a segment of that length: for each a byte that names it, 16 that say how many codes there are of each length, and
-// a byte for each code. stb reads on to the end of a table that leaves its segment; it writes the 257th code out of bounds, and cannot
-// tell the 256th from none (pictures have no use for more than 176).
+// a byte for each code. stb reads on to the end of a table that leaves its segment; it writes the 257th code out of bounds, and
+// cannot tell the 256th from none (pictures have no use for more than 176).
 bool has_overlong_table(std::string_view tables, size_t length) {
   for (size_t at = 0; at < length;) {
     size_t codes = 0;
