@@ -2,6 +2,7 @@
 // is read off the plan.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,20 @@ struct Decision {
 };
 
 std::vector<Decision> explain(const Plan& plan);
+
+// Bytes that a render takes, without stacks, the program, and the loader's peak.
+struct MemoryNeed {
+  size_t scene = 0;
+  size_t film = 0;
+  size_t paths = 0;  // of all threads
+  size_t files =
+      0;  // while what is drawn is written: the error's estimate, a checkpoint's copies of the film, what is encoded
+
+  size_t all() const { return scene + film + paths + files; }
+};
+
+// saved: whether there is a checkpoint, or a film file is written.
+MemoryNeed memory_need(const Plan& plan, bool saved);
 
 // In one line.
 std::string one_line(const Decision& decision);

@@ -71,24 +71,41 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
 
 }  // namespace
 
-void explain_memory(const Plan& plan, std::vector<Decision>& out) {
-  const size_t scene = add_scene(plan, out);
+MemoryNeed memory_need(const Plan& plan, bool saved) {
+  std::vector<Decision> ignored;
   const Settings& settings = plan.settings;
   const Window window = settings.window();
-  const size_t pixels = size_t{settings.width} * settings.height;
-  const size_t picture = (3 * sizeof(float) + sizeof(uint64_t)) * window.width * window.height;
-  const bool noise = settings.noise > 0;
+  const size_t pixels = size_t{settings.width} * settings.height, shown = size_t{window.width} * window.height;
   // Those of --noise are in two halves, with an estimate of each.
   const size_t sums = sizeof(PixelSums) + sizeof(uint64_t);
+  const size_t drawn = settings.noise > 0 ? 2 * (sums + sizeof(std::array<double, 3>)) : sums;
+  const size_t picture = 3 * sizeof(float) + sizeof(uint64_t);
+  constexpr size_t kEncoded = 6 * sizeof(float);  // of a pixel, in any format, with what it is made from
+  // Means; with --noise also their squared errors, both in arrays that grow.
+  const size_t mean = settings.noise > 0 ? 3 * (sizeof(PixelMean) + 3 * sizeof(float)) : sizeof(PixelMean);
+  const size_t means = settings.estimate_error ? mean : 0;
+  return {.scene = add_scene(plan, ignored),
+          .film = drawn * pixels + picture * shown,
+          .paths = thread_count(settings) * 3 * PathBuffer::bytes(settings.wave),
+          .files = std::max(means, kEncoded + (saved ? 4 * drawn : 0)) * shown};
+}
+
+void explain_memory(const Plan& plan, std::vector<Decision>& out) {
+  const MemoryNeed need = memory_need(plan, false);
+  add_scene(plan, out);
+  const Settings& settings = plan.settings;
+  const size_t pixels = size_t{settings.width} * settings.height;
+  const bool noise = settings.noise > 0;
   const size_t threads = thread_count(settings);
   Memory memory(out);
   memory.add("film", noise ? "two halves" : "sums, picture", noise ? "each ends the other's estimate" : "exact sums",
-             (noise ? 2 * (sums + sizeof(std::array<double, 3>)) : sums) * pixels + picture, "per_pixel", pixels);
+             need.film, "per_pixel", pixels);
   memory.add("paths", count_of(threads, "thread"),
              "three buffers of " + std::to_string(settings.wave) +
                  " paths: two that the sort moves between, one for those that met a light",
-             threads * 3 * PathBuffer::bytes(settings.wave), "per_thread", threads);
-  memory.add("all", "scene, film, paths", "without stacks, the program, and the loader's peak", scene + memory.sum());
+             need.paths, "per_thread", threads);
+  memory.add("files", "while they are written", "a checkpoint's takes four times the film beside it", need.files);
+  memory.add("all", "scene, film, paths, files", "without stacks, the program, and the loader's peak", need.all());
 }
 
 }  // namespace lanewise

@@ -85,6 +85,7 @@ Document::Document(const std::string& path, const std::string& text) : path_(pat
 
   constexpr unsigned kFlags = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_doctype;
   const pugi::xml_parse_result result = xml_.load_buffer(text.data(), text.size(), kFlags, pugi::encoding_utf8);
+  if (result.status == pugi::status_out_of_memory) throw std::bad_alloc();
   if (!result) {
     const auto offset = std::clamp<ptrdiff_t>(result.offset, 0, static_cast<ptrdiff_t>(text.size()));
     const auto line = 1 + std::count(text.begin(), text.begin() + offset, '\n');

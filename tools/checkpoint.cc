@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <new>
 #include <utility>
 
 #include "core/types.h"
+#include "tools/memory_limit.h"
 
 namespace lanewise {
 namespace {
@@ -70,10 +70,8 @@ void Checkpoint::write(const FilmFile& film) {
   failure_.clear();
   try {
     write_file(options_.checkpoint, encode_film(film));
-  } catch (const std::bad_alloc&) {
-    failure_ = options_.checkpoint + ": cannot write: not enough memory";
   } catch (const std::exception& e) {
-    failure_ = e.what();
+    failure_ = is_of_memory(e) ? options_.checkpoint + ": cannot write: " + memory_complaint() : e.what();
   }
   if (!failure_.empty() && !failed_before) std::cerr << "lanewise: warning: " << failure_ << "; rendering goes on\n";
 }

@@ -10,6 +10,7 @@
 #include "scenes/export.h"
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
+#include "tools/memory_limit.h"
 #include "tools/output_files.h"
 #include "tools/progress.h"
 #include "tools/render_options.h"
@@ -62,6 +63,7 @@ void run_convert(const ConvertOptions& o) {
   check_writable(o.output);
   OutputFiles(o.render).add("--output", o.output);
   const fs::path folder = fs::path(o.output).parent_path() / (fs::path(o.output).stem().string() + "_meshes");
+  hold_memory_to(o.render.max_memory);
   ProgressLine progress(o.render.quiet);
   progress.show("loading " + o.render.scene);
   const Scene scene = load_chosen_scene(o.render);

@@ -76,6 +76,27 @@ CLI::Validator duration() {
   });
 }
 
+std::optional<uint64_t> parse_bytes(const std::string& text) {
+  constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"", 1}, {"K", 0x1p10}, {"M", 0x1p20}, {"G", 0x1p30}, {"T", 0x1p40}};
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [name, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
+  const std::string_view given(name, static_cast<size_t>(end - name));
+  const auto* unit =
+      std::find_if(std::begin(kUnits), std::end(kUnits), [&](const auto& u) { return u.first == given; });
+  if (error != std::errc() || unit == std::end(kUnits)) return {};
+  const double value = number * unit->second;
+  if (!(value >= 1 && value < 0x1p62)) return {};
+  return static_cast<uint64_t>(value);
+}
+
+CLI::Validator bytes() {
+  return validator([](const std::string& text) {
+    return parse_bytes(text) ? std::string() : "'" + text + "' is not an amount of memory such as 500M, 2G or 1.5G";
+  });
+}
+
 std::optional<SampleRange> parse_sample_range(const std::string& text) {
   SampleRange range;
   const char* const end = text.data() + text.size();

@@ -22,6 +22,10 @@ CLI::Validator real_number(double lo, double hi);
 std::optional<double> parse_duration(const std::string& text);
 CLI::Validator duration();
 
+// A number of bytes: "500M", "2G", "1.5G", "800K" (of 1024 each), or the number alone. Nothing if it is none, or not above 0.
+std::optional<uint64_t> parse_bytes(const std::string& text);
+CLI::Validator bytes();
+
 // "A:B" with A < B, at most kMaxSpp.
 std::optional<SampleRange> parse_sample_range(const std::string& text);
 CLI::Validator sample_range();

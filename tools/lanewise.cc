@@ -5,13 +5,13 @@
 #include <exception>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <string>
 
 #include "core/file.h"
 #include "core/types.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
+#include "tools/memory_limit.h"
 #include "tools/script_command.h"
 #include "tools/standard_streams.h"
 #include "tools/stop_signals.h"
@@ -89,10 +89,8 @@ int main(int argc, char** argv) {
     lanewise::die_of(stopped.signal);
   } catch (const lanewise::UsageError& e) {
     return complain(e.what(), 2);
-  } catch (const std::bad_alloc&) {
-    return complain("not enough memory", 1);
   } catch (const std::exception& e) {
-    return complain(e.what(), 1);
+    return complain(lanewise::is_of_memory(e) ? lanewise::memory_complaint() : e.what(), 1);
   } catch (...) {
     return complain("unknown error", 1);
   }

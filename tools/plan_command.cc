@@ -9,6 +9,7 @@
 #include "core/plan.h"
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
+#include "tools/memory_limit.h"
 #include "tools/output_files.h"
 #include "tools/plan_report.h"
 #include "tools/progress.h"
@@ -51,6 +52,7 @@ void run_plan(const PlanOptions& o, const std::string& command_line) {
     check_writable(o.json);
     OutputFiles(o.render).add("--json", o.json);
   }
+  hold_memory_to(o.render.max_memory);
   ProgressLine progress(o.render.quiet);
   progress.show("loading " + o.render.scene);
   Scene scene = load_chosen_scene(o.render);
@@ -60,6 +62,7 @@ void run_plan(const PlanOptions& o, const std::string& command_line) {
   progress.clear();
   if (!o.json.empty()) write_file(o.json, plan_json(o, command_line, decisions));
   if (!o.render.quiet) std::cout << title(o) << decisions_table(decisions);
+  check_memory(o.render, plan);
 }
 
 }  // namespace

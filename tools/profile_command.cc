@@ -15,6 +15,7 @@
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
 #include "tools/flags.h"
+#include "tools/memory_limit.h"
 #include "tools/output_files.h"
 #include "tools/profile_compare.h"
 #include "tools/profile_html.h"
@@ -99,7 +100,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const CLI::App& app
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = name_of(*option), group = option->get_group();
     if (group == "Profiling" || group == "Output" || group == "Not yet supported") continue;
-    if (name == "--help" || name == "SCENE" || name == "--threads") continue;
+    if (name == "--help" || name == "SCENE" || name == "--threads" || name == "--max-memory") continue;
     std::string value = option->get_default_str();
     if (option->count() > 0) {
       value.clear();
@@ -112,11 +113,13 @@ std::vector<std::pair<std::string, std::string>> settings_of(const CLI::App& app
 
 ProfileReport measure_scene(const ProfileOptions& o, const CLI::App& app, const std::string& command_line) {
   choose_isa(o.render.isa);
+  hold_memory_to(o.render.max_memory);
   ProgressLine progress(o.render.quiet);
   progress.show("loading " + o.render.scene);
   const Scene scene = load_chosen_scene(o.render);
   progress.show("planning");
   const Plan plan = make_plan(scene, o.render.settings);
+  check_memory(o.render, plan);
   ProfileReport report =
       measure(plan, {o.repeat, !o.no_scaling, [&](const std::string& text) { progress.show(text); }});
   report.command = command_line;

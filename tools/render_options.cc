@@ -144,6 +144,12 @@ void add_machine_flags(CLI::App& app, RenderOptions& o) {
       ->check(whole_number(kLanes, 1 << 20, kLanes))
       ->type_name("N")
       ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--max-memory", [&o](const std::string& size) { o.max_memory = parse_bytes(size).value_or(0); },
+         "The most memory that it takes (500M, 2G); what needs more is refused, before the work where that can be "
+         "known")
+      ->check(bytes())
+      ->type_name("SIZE");
   const std::vector<std::string> isas = {"scalar", "sse4", "avx2", "avx512"};
   app.add_option("--isa", o.isa, "Instruction set of the kernels")
       ->check(one_of(isas))

@@ -34,7 +34,8 @@ struct RenderOptions {
   std::string rate;   // the file of the picture of sample counts; empty: none
   Settings settings;  // settings.seconds: as given, from the program's start
   Normals normals = Normals::kFile;
-  std::string isa;  // empty: the best here
+  std::string isa;          // empty: the best here
+  uint64_t max_memory = 0;  // bytes; 0: no limit
   Reference reference = Reference::kNone;
   const Metal* metal = nullptr;  // overrides: null or empty leaves the scene's materials alone
   std::optional<double> alpha;
