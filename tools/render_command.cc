@@ -22,6 +22,7 @@
 #include "tools/checkpoint.h"
 #include "tools/chosen_scene.h"
 #include "tools/commands.h"
+#include "tools/memory_limit.h"
 #include "tools/output_files.h"
 #include "tools/progress.h"
 #include "tools/rate_picture.h"
@@ -127,6 +128,7 @@ void draw_for_rank_0(const RenderOptions& o, Messenger& messenger, const std::st
   const StopSignals ignored;
   const auto load = [&] {
     choose_isa(o.isa);
+    hold_memory_to(o.max_memory);
     Scene scene = load_chosen_scene(o);
     RenderIdentity identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
     return RankJob{make_plan(std::move(scene), o.settings), of_rank(std::move(identity), command_line)};
@@ -143,6 +145,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
     throw UsageError("--reference draws in one process, without mpirun");
   check_outputs(o);
   choose_isa(o.isa);
+  hold_memory_to(o.max_memory);
   std::optional<Checkpoint> checkpoint;
   if (!o.checkpoint.empty()) checkpoint.emplace(o);
 
@@ -156,6 +159,7 @@ void run_render(const RenderOptions& o, const std::string& command_line) {
     identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
   progress.show("planning");
   Plan plan = timed(seconds.plan, [&] { return make_plan(std::move(scene), o.settings); });
+  check_memory(o, plan);
   if (remote) {
     progress.show("waiting for the other ranks");
     remote->meet(of_rank(identity, command_line));
