@@ -101,6 +101,10 @@ TEST_CASE("memory: what --max-memory says is enough is enough, and less is held 
   CHECK(loading.exit_code == 1);
   CHECK(loading.err == "lanewise: not enough memory within --max-memory, 30M\n");
   CHECK_FALSE(std::filesystem::exists(folder.file("dense.png")));
+  // Nor is a scene without room to be read taken for a broken one.
+  const ProcessResult none =
+      test::run_process(test::program(), render({"-f", "a.png", "--max-memory", "1K"}), folder.path());
+  CHECK(none.err == "lanewise: not enough memory within --max-memory, 1M\n");
 }
 
 TEST_CASE("memory: however little there is, a command comes to its right end, or says in one line that it cannot") {
