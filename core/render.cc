@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "core/local_draw.h"
-#include "core/ranks.h"
+#include "core/remote_ranks.h"
 #include "core/schedule.h"
 #include "core/stats.h"
 

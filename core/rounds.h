@@ -1,7 +1,11 @@
 // -s and --time: every pixel gets the same number of samples, in rounds over the whole picture.
 #pragma once
 
-#include "core/schedule.h"
+#include <cstdint>
+
+#include "core/exposure.h"
+#include "core/render_control.h"
+#include "core/settings.h"
 
 namespace lanewise {
 

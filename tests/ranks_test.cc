@@ -17,8 +17,9 @@
 #include "core/mpi_messenger.h"
 #include "core/packed_sums.h"
 #include "core/plan.h"
-#include "core/ranks.h"
+#include "core/remote_ranks.h"
 #include "core/render.h"
+#include "core/serve_rank.h"
 #include "core/verify/test_scene.h"
 #include "tests/program.h"
 #include "tests/subprocess.h"
@@ -107,7 +108,7 @@ RenderResult render_on(uint32_t ranks, const Settings& settings, const std::func
   Post post(ranks);
   std::vector<std::jthread> others;
   for (uint32_t rank = 1; rank < ranks; ++rank) {
-    others.emplace_back([&, rank] { serve(post[rank], [&] { return load(rank); }); });
+    others.emplace_back([&, rank] { serve_rank(post[rank], [&] { return load(rank); }); });
   }
   RemoteRanks remote(post[0]);
   remote.meet(kIdentity);
@@ -172,7 +173,7 @@ TEST_CASE("ranks: stopped and resumed with other ranks, the same bits") {
     Post post(ranks % 3 + 1);
     std::vector<std::jthread> others;
     for (uint32_t rank = 1; rank < ranks % 3 + 1; ++rank) {
-      others.emplace_back([&, rank] { serve(post[rank], [&] { return job(settings, rank); }); });
+      others.emplace_back([&, rank] { serve_rank(post[rank], [&] { return job(settings, rank); }); });
     }
     RemoteRanks remote(post[0]);
     remote.meet(kIdentity);
@@ -213,7 +214,7 @@ TEST_CASE("ranks: one that fails, or would draw something else, ends the render 
 TEST_CASE("ranks: what is thrown on a thread of another rank ends the render, too") {
   const Settings settings = modes()[0];
   Post post(2);
-  const std::jthread other([&] { serve(post[1], [&] { return job(settings, 1); }); });
+  const std::jthread other([&] { serve_rank(post[1], [&] { return job(settings, 1); }); });
   RemoteRanks remote(post[0]);
   post[0].send(1, "\2");  // a request without an end
   CHECK(why_not([&] {

@@ -14,8 +14,9 @@
 #include "core/image_io.h"
 #include "core/mpi_messenger.h"
 #include "core/plan.h"
-#include "core/ranks.h"
+#include "core/remote_ranks.h"
 #include "core/render.h"
+#include "core/serve_rank.h"
 #include "core/scene.h"
 #include "core/types.h"
 #include "core/isa.h"
@@ -133,7 +134,7 @@ void draw_for_rank_0(const RenderOptions& o, Messenger& messenger, const std::st
     RenderIdentity identity = render_identity(scene, o.settings, arithmetic_of(isa_name(o.reference)));
     return RankJob{make_plan(std::move(scene), o.settings), of_rank(std::move(identity), command_line)};
   };
-  serve(messenger, load, {.clock = !o.stats.empty()});
+  serve_rank(messenger, load, {.clock = !o.stats.empty()});
 }
 
 void run_render(const RenderOptions& o, const std::string& command_line) {

@@ -6,7 +6,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -14,7 +13,6 @@
 
 #include "core/local_draw.h"
 #include "core/messenger.h"
-#include "core/plan.h"
 #include "core/profile.h"
 #include "core/render.h"
 #include "core/render_identity.h"
@@ -74,14 +72,5 @@ class RemoteRanks {
   std::string failure_;
   bool ended_ = false;
 };
-
-struct RankJob {
-  Plan plan;
-  RenderIdentity identity;  // what it must share with rank 0
-};
-
-// What the others do: loads, says so, and draws what rank 0 asks for, on as many threads as the plan's settings say, until it ends
-// this. What goes wrong is rank 0's to tell.
-void serve(Messenger& messenger, const std::function<RankJob()>& load, ProfileDetail detail = {});
 
 }  // namespace lanewise

@@ -1,0 +1,29 @@
+// How samples are drawn, and the picture that comes of it: what core/schedule.h and its ways share.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/error_estimate.h"
+#include "core/image.h"
+#include "core/pixel_sums.h"
+
+namespace lanewise {
+
+// Adds samples first .. first + count - 1 of each of the pixels (y * width + x) to sums[pixel], on the thread that is called
+// `worker`; returns how many rays that took.
+using Draw = std::function<uint64_t(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count,
+                                    PixelSums* sums, uint32_t worker)>;
+
+// The picture of settings.window().
+struct Exposure {
+  Image image;
+  std::vector<uint64_t> samples;  // drawn for each pixel of it
+  bool stopped = false;           // before all was drawn
+  double converged = 1;           // share of its pixels that reached what -a or --noise asks for
+  std::optional<ErrorEstimate> error;
+};
+
+}  // namespace lanewise
