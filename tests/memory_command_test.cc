@@ -136,6 +136,19 @@ TEST_CASE("memory: however little there is, a command comes to its right end, or
   }
   CHECK(good > 10);
   CHECK(refused > 2);
+
+  // OpenEXR makes exceptions of its own of it, which name no file.
+  for (rlim_t megabytes = 24; megabytes < 120; megabytes += 3) {
+    const Arguments arguments = render({"-r", "500", "400", "-s", "1", "-f", "got.exr", "--checkpoint", "c.exr"});
+    std::filesystem::remove(folder.file("c.exr"));
+    const ProcessResult r =
+        test::run_process(test::program(), arguments, folder.path(), [&] { hold(RLIMIT_DATA, megabytes * kMegabyte); });
+    CAPTURE(megabytes);
+    CAPTURE(r.err);
+    CHECK(r.exit_code <= 1);
+    CHECK(lines(r.err) <= 2);  // a warning of the checkpoint before
+    CHECK(r.err.find("(string)") == std::string::npos);
+  }
 }
 
 TEST_CASE("memory: threads that the machine does not give leave the others, or this one, to work") {

@@ -1,6 +1,7 @@
 // Runs a program and keeps what it says.
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@ struct ProcessResult {
   int exit_code = 0;  // 128 + the signal's number if one ended it
   std::string out;
   std::string err;
+  long peak_kilobytes = 0;  // of memory that it had
 };
 
 inline std::string read_back(FILE* file) {
@@ -53,9 +55,11 @@ inline ProcessResult run_process(const std::string& program, const std::vector<s
     ::_exit(127);
   }
   int status = 0;
-  ::waitpid(child, &status, 0);
+  rusage usage{};
+  ::wait4(child, &status, 0, &usage);
   std::fclose(in);
   ProcessResult result;
+  result.peak_kilobytes = usage.ru_maxrss;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.out = read_back(out);
   result.err = read_back(err);
