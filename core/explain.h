@@ -33,8 +33,7 @@ struct MemoryNeed {
   size_t scene = 0;
   size_t film = 0;
   size_t paths = 0;  // of all threads
-  size_t files =
-      0;  // while what is drawn is written: the error's estimate, a checkpoint's copies of the film, what is encoded
+  size_t files = 0;  // for a while: the error's estimate, a checkpoint's copies of the film, what is encoded
 
   size_t all() const { return scene + film + paths + files; }
 };

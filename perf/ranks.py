@@ -24,6 +24,7 @@ BARE_SUMS = 80  # bytes of a pixel's sums, unpacked
 
 # The farm of the model: nodes of 16 cores with one rank each, and 10 Gbit/s to rank 0.
 CORES, BANDWIDTH = 16, 1.25e9
+DESKS = CORES + 1 + CORES // 8  # as in core/remote_ranks.cc
 WIDTH, HEIGHT = 7680, 4320
 
 
@@ -130,7 +131,9 @@ def main():
               'double from 64 samples on and send the film each time, the film\'s reduction is the limit. Three things keep it away: '
               'sums are packed; every tile is drawn whole, so that a round sends each pixel once; and, as merging is exact in any '
               'grouping, ranks can be split: of 1,000, 31 renders of 32 ranks each draw a range of the samples (`--samples`), each '
-              'with a rank 0 of its own, and `lanewise merge` adds the 31 film files, some at a time on different machines.', '']
+              'with a rank 0 of its own, and `lanewise merge` adds the 31 film files, some at a time on different machines. That is '
+              f'the way from some 100 ranks on, also because rank 0 keeps a waiting thread for each draw that it has asked for: {DESKS} '
+              f'a rank of {CORES} threads.', '']
     (lanewise.RESULTS / 'ranks.md').write_text('\n'.join(lines))
     (lanewise.RESULTS / 'ranks.json').write_text(json.dumps(
         {'scene': arguments.scene.stem, 'samples': arguments.samples, 'ranks': rows, 'bytes_a_pixel': sizes,
