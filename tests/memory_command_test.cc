@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -141,8 +142,10 @@ TEST_CASE("memory: however little there is, a command comes to its right end, or
   for (rlim_t megabytes = 24; megabytes < 120; megabytes += 3) {
     const Arguments arguments = render({"-r", "500", "400", "-s", "1", "-f", "got.exr", "--checkpoint", "c.exr"});
     std::filesystem::remove(folder.file("c.exr"));
-    const ProcessResult r =
-        test::run_process(test::program(), arguments, folder.path(), [&] { hold(RLIMIT_DATA, megabytes * kMegabyte); });
+    const ProcessResult r = test::run_process(test::program(), arguments, folder.path(), [&] {
+      ::setenv("TMPDIR", folder.path().c_str(), 1);
+      hold(RLIMIT_DATA, megabytes * kMegabyte);
+    });
     CAPTURE(megabytes);
     CAPTURE(r.err);
     CHECK(r.exit_code <= 1);
