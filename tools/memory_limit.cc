@@ -19,6 +19,13 @@
 namespace lanewise {
 namespace {
 
+// Whose own data, terabytes of addresses, are none of the render's.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kIsSanitized = true;
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
 uint64_t held_to = 0;
 
 // Rounded up: a limit of what is said to be needed is enough.
@@ -29,6 +36,7 @@ std::string size_text(uint64_t bytes) {
 
 // What the program has taken of what is held.
 uint64_t data_bytes() {
+  if (kIsSanitized) return 0;
   uint64_t all, resident, shared, text, libraries, data = 0;  // pages
   std::ifstream("/proc/self/statm") >> all >> resident >> shared >> text >> libraries >> data;
   return data * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
@@ -55,7 +63,7 @@ struct Share {
 void hold_memory_to(uint64_t bytes) {
   if (bytes == 0) return;
   held_to = bytes;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (kIsSanitized) return;
   // Of data rather than of addresses: those that the allocator reserves, and the libraries' code, are no memory that is taken.
   rlimit limit{};
   ::getrlimit(RLIMIT_DATA, &limit);
@@ -63,7 +71,6 @@ void hold_memory_to(uint64_t bytes) {
   if (::setrlimit(RLIMIT_DATA, &limit) != 0) {
     throw Error("--max-memory: " + std::generic_category().message(errno));
   }
-#endif
 }
 
 void check_memory(const RenderOptions& o, const Plan& plan) {
