@@ -55,8 +55,8 @@ def measure(scene, samples, rounds):
         rows.append({'ranks': ranks, 'cores': beside[ranks],
                      'seconds': statistics.median(r['seconds']['render'] for r in runs),
                      'ratio': statistics.median(ratios), 'least': min(ratios), 'largest': max(ratios),
-                     'sent': [r['bytes_sent'] for r in runs[-1]['ranks'][1:]],
-                     'received': [r['bytes_received'] for r in runs[-1]['ranks'][1:]]})
+                     'sent': [r['bytes_sent'] for r in runs[-1].get('ranks', [])[1:]],
+                     'received': [r['bytes_received'] for r in runs[-1].get('ranks', [])[1:]]})
     return rows
 
 
