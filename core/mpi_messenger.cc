@@ -35,9 +35,10 @@ uint32_t variable(std::initializer_list<const char*> names, uint32_t otherwise) 
   return otherwise;
 }
 
-// Open MPI's, and that of the process managers of MPICH and Slurm; the last tells of PMIx, for Open MPI, in a job of Slurm.
+// As Open MPI says, or the process managers of MPICH and Slurm; where Slurm starts Open MPI's by PMIx, it alone knows how many.
 uint32_t launched_ranks() {
-  return variable({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", std::getenv("PMIX_RANK") ? "SLURM_NTASKS" : "PMI_SIZE"}, 1);
+  const uint32_t by_pmix = std::getenv("PMIX_RANK") ? variable({"SLURM_NTASKS"}, 1) : 1;
+  return variable({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, by_pmix);
 }
 
 #ifdef LANEWISE_MPI
@@ -64,8 +65,8 @@ class MpiMessenger : public Messenger {
   uint32_t rank() const override { return rank_; }
   uint32_t ranks() const override { return ranks_; }
   void send(uint32_t to, std::string bytes) override {
-    if (bytes.size() > INT_MAX)
-      throw Error("MPI: a message of more than 2 GiB");  // a wave of 2^20 pixels is less than 100 MB
+    // A tile is far from it: the pixels of the largest wave are some 100 MB.
+    if (bytes.size() > INT_MAX) throw Error("MPI: a message of more than 2 GiB");
     const std::lock_guard lock(mutex_);
     outbox_.emplace_back(to, std::move(bytes));
     changed_.notify_one();
@@ -85,8 +86,8 @@ class MpiMessenger : public Messenger {
 
   void run(const std::stop_token& stop) {
     using namespace std::chrono_literals;
-    constexpr auto kShortest = 20us,
-                   kLongest = 500us;  // between two looks: MPI has no way to wait without burning a core
+    // Between two looks: MPI has no way to wait without burning a core.
+    constexpr auto kShortest = 20us, kLongest = 500us;
     auto pause = kShortest;
     std::deque<Sending> sending;  // does not move what it holds
     for (;;) {

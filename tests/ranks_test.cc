@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -261,19 +260,10 @@ bool no_mpi() {
   return true;
 }
 
-test::ProcessResult shell(const test::TemporaryFolder& folder, const std::string& command) {
-  return test::run_process("/bin/sh", {"-c", command}, folder.path());
-}
-
 // For the shell. MPI itself leaks.
 std::string mpirun(uint32_t ranks) {
   return "timeout 55 mpirun --allow-run-as-root --oversubscribe -x ASAN_OPTIONS=detect_leaks=0 -n " +
          std::to_string(ranks) + " ";
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -282,13 +272,13 @@ TEST_CASE("mpirun: a picture is that of one process") {
   if (no_mpi()) return;
   const test::TemporaryFolder folder;
   const std::string render = test::program() + " render " + test::box() + " -r 64 48 -s 64 -t 1 --stats s.json -f ";
-  REQUIRE(shell(folder, render + "one.pfm").exit_code == 0);
+  REQUIRE(test::run_shell(folder.path(), render + "one.pfm").exit_code == 0);
   for (const uint32_t ranks : {2u, 3u}) {
-    const test::ProcessResult ran = shell(folder, mpirun(ranks) + render + "many.pfm");
+    const test::ProcessResult ran = test::run_shell(folder.path(), mpirun(ranks) + render + "many.pfm");
     CAPTURE(ran.err);
     CHECK(ran.exit_code == 0);
-    CHECK(bytes_of(folder.file("many.pfm")) == bytes_of(folder.file("one.pfm")));
-    const auto stats = nlohmann::json::parse(bytes_of(folder.file("s.json")));
+    CHECK(test::read_text(folder.file("many.pfm")) == test::read_text(folder.file("one.pfm")));
+    const auto stats = nlohmann::json::parse(test::read_text(folder.file("s.json")));
     CHECK(stats["ranks"].size() == ranks);
     CHECK(ran.out.find(ranks == 2 ? "of 2 ranks," : "of 3 ranks,") != std::string::npos);
   }
@@ -298,7 +288,8 @@ TEST_CASE("mpirun: ranks that were started with other commands are not taken for
   if (no_mpi()) return;
   const test::TemporaryFolder folder;
   const std::string part = test::program() + " render -q " + test::box() + " -r 64 48 --samples ";
-  const test::ProcessResult ran = shell(folder, mpirun(1) + part + "0:4 -f a.exr : -n 1 " + part + "4:8 -f b.exr");
+  const test::ProcessResult ran =
+      test::run_shell(folder.path(), mpirun(1) + part + "0:4 -f a.exr : -n 1 " + part + "4:8 -f b.exr");
   CAPTURE(ran.err);
   CHECK(ran.exit_code != 0);
   CHECK(ran.err.find("rank 1: would draw another picture: command is ") != std::string::npos);
@@ -313,19 +304,21 @@ TEST_CASE("mpirun: a rank that is killed costs a restart, with other ranks or no
   const std::string kLong = "150";  // under sanitizers
 #endif
   const std::string render = test::program() + " render " + test::box() + " -r 64 48 -s " + kLong + " -t 1 -q -f ";
-  const test::ProcessResult lost =
-      shell(folder, mpirun(3) + render +
-                        "lost.pfm --checkpoint c.exr --every 50ms & while ! [ -e c.exr ]; do sleep 0.02; done; "
-                        "kill -9 $(pgrep -P $(pgrep -P $!) | tail -1); wait $!");
+  // Each rank says which process it is, and becomes the program.
+  const std::string named = "sh -c 'echo $$ >rank$OMPI_COMM_WORLD_RANK; exec \"$@\"' sh ";
+  const test::ProcessResult lost = test::run_shell(
+      folder.path(), mpirun(3) + named + render +
+                         "lost.pfm --checkpoint c.exr --every 50ms & while ! [ -e c.exr ]; do sleep 0.02; done; "
+                         "kill -9 $(cat rank2); wait $!");
   CAPTURE(lost.err);
   CHECK(lost.exit_code != 0);
   CHECK_FALSE(std::filesystem::exists(folder.file("lost.pfm")));
   std::filesystem::copy_file(folder.file("c.exr"), folder.file("d.exr"));
-  CHECK(shell(folder, render + "whole.pfm").exit_code == 0);
-  CHECK(shell(folder, render + "alone.pfm --checkpoint c.exr --resume").exit_code == 0);
-  CHECK(shell(folder, mpirun(2) + render + "two.pfm --checkpoint d.exr --resume").exit_code == 0);
-  CHECK(bytes_of(folder.file("alone.pfm")) == bytes_of(folder.file("whole.pfm")));
-  CHECK(bytes_of(folder.file("two.pfm")) == bytes_of(folder.file("whole.pfm")));
+  CHECK(test::run_shell(folder.path(), render + "whole.pfm").exit_code == 0);
+  CHECK(test::run_shell(folder.path(), render + "alone.pfm --checkpoint c.exr --resume").exit_code == 0);
+  CHECK(test::run_shell(folder.path(), mpirun(2) + render + "two.pfm --checkpoint d.exr --resume").exit_code == 0);
+  CHECK(test::read_text(folder.file("alone.pfm")) == test::read_text(folder.file("whole.pfm")));
+  CHECK(test::read_text(folder.file("two.pfm")) == test::read_text(folder.file("whole.pfm")));
 }
 
 TEST_CASE("mpirun: what is wrong is said once, and nothing hangs") {
@@ -336,7 +329,8 @@ TEST_CASE("mpirun: what is wrong is said once, and nothing hangs") {
                                                         {test::box() + " --no-such-flag", "--no-such-flag"},
                                                         {test::box() + " -f no/folder/x.png", "no/folder"},
                                                         {test::box() + " --reference float", "--reference"}}) {
-    const test::ProcessResult ran = shell(folder, mpirun(3) + test::program() + " render -q " + arguments);
+    const test::ProcessResult ran =
+        test::run_shell(folder.path(), mpirun(3) + test::program() + " render -q " + arguments);
     CAPTURE(ran.err);
     CHECK(ran.exit_code != 0);
     const size_t first = ran.err.find("lanewise: ");

@@ -22,19 +22,12 @@ echo "$@" >>calls
 echo 7
 )";
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 TEST_CASE("slurm: parts of a job array, merged, are the bits of one render; only missing ones are drawn again") {
   if (test::nothing_to_test()) return;
   const test::TemporaryFolder folder;
-  const auto shell = [&](const std::string& command) {
-    return test::run_process("/bin/sh", {"-c", command}, folder.path());
-  };
+  const auto shell = [&](const std::string& command) { return test::run_shell(folder.path(), command); };
   std::ofstream(folder.file("sbatch")) << kSbatch;
   std::filesystem::permissions(folder.file("sbatch"), std::filesystem::perms::owner_all);
   const std::string flags = "'" + test::box() + "' -r 32 24 -q -f ";
@@ -44,8 +37,8 @@ TEST_CASE("slurm: parts of a job array, merged, are the bits of one render; only
   const test::ProcessResult ran = shell(farm + "'a b.pfm' --sbatch '--partition=night --time=1:00'");
   CAPTURE(ran.err);
   CHECK(ran.exit_code == 0);
-  CHECK(bytes_of(folder.file("a b.pfm")) == bytes_of(folder.file("one.pfm")));
-  CHECK(bytes_of(folder.file("calls")) ==
+  CHECK(test::read_text(folder.file("a b.pfm")) == test::read_text(folder.file("one.pfm")));
+  CHECK(test::read_text(folder.file("calls")) ==
         "--parsable --partition=night --time=1:00 a b.pfm.parts/part.sh\n"
         "--parsable --partition=night --time=1:00 --dependency=afterok:7 --kill-on-invalid-dep=yes a "
         "b.pfm.parts/merge.sh\n");
@@ -60,7 +53,7 @@ TEST_CASE("slurm: parts of a job array, merged, are the bits of one render; only
   CHECK(shell(farm + "'a b.pfm' -m 3").err.find("parts of another render") != std::string::npos);
   CHECK(shell(farm + "'a b.pfm' --parts 3 --samples 40").exit_code == 0);  // of the same, and other samples
   REQUIRE(shell(test::program() + " render -s 40 " + flags + "forty.pfm").exit_code == 0);
-  CHECK(bytes_of(folder.file("a b.pfm")) == bytes_of(folder.file("forty.pfm")));
+  CHECK(test::read_text(folder.file("a b.pfm")) == test::read_text(folder.file("forty.pfm")));
 
   CHECK(shell(farm + "x.png -s 5").exit_code == 2);
   CHECK(shell(farm + "x.png --stats=s.json").exit_code == 2);

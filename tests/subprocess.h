@@ -66,4 +66,9 @@ inline ProcessResult run_process(const std::string& program, const std::vector<s
   return result;
 }
 
+// The same by the shell.
+inline ProcessResult run_shell(const std::filesystem::path& folder, const std::string& command) {
+  return run_process("/bin/sh", {"-c", command}, folder);
+}
+
 }  // namespace lanewise::test
