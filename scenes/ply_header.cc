@@ -1,6 +1,7 @@
 #include "scenes/ply_header.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <iterator>
@@ -91,6 +92,8 @@ class Header {
     } else if (keyword == "element" && words_.size() == 3) {
       finish_element();
       element_ = words_[1];
+      // Of an element that it does not know, Assimp takes the name for the count.
+      if (std::isdigit(static_cast<unsigned char>(element_[0]))) fail_line();
       // Assimp has room for the first, and writes the second into it.
       if (!names_.insert(element_ == "tristrips" ? "face" : element_).second) {
         fail("its element " + lanewise::quoted(element_) + " is there twice");

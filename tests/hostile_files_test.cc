@@ -1,5 +1,6 @@
 // Files that mean harm, or are broken: what the fuzzers found, seeds cut short, and scenes that name what is not theirs.
 #include <doctest/doctest.h>
+#include <malloc.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/image_stb.h"
 #include "scenes/load.h"
 #include "tests/formats_harness.h"
 #include "tests/fuzz/harness.h"
@@ -333,6 +335,7 @@ TEST_CASE("hostile files: small files that ask for much are refused, soon") {
     return test::read_text((test::source_dir() / "tests/fuzz/regressions" / name).string());
   };
   refused("texture", found("texture/huffman-table-too-long"), "a Huffman table of more than 255 codes");
+  refused("ply", found("ply/element-named-by-a-number"), "line");
   refused("png", found("png/chunk-longer-than-file"), "a chunk leaves the file");
   refused("exr", found("exr/attribute-longer-than-file"), "its header leaves the file");
   refused("exr", found("exr/channels-longer-than-attribute"), "its header leaves the file");
@@ -342,6 +345,32 @@ TEST_CASE("hostile files: small files that ask for much are refused, soon") {
   REQUIRE(window != std::string::npos);
   exr.replace(window + 29, 8, std::string("\xff\x1f\0\0\xff\x1f\0\0", 8));
   refused("exr", exr, "cannot read");
+}
+
+TEST_CASE("hostile files: a JPEG without its Huffman tables decodes the same whatever memory holds") {
+  const std::string whole = test::read_text(Trap::seed("texture/baseline.jpg"));
+  std::string without;
+  for (size_t at = 0; at < whole.size();) {
+    const bool table = whole.compare(at, 2, "\xff\xc4") == 0;
+    const size_t length =
+        table ? 2 + (static_cast<uint8_t>(whole[at + 2]) << 8) + static_cast<uint8_t>(whole[at + 3]) : 1;
+    if (!table) without += whole[at];
+    at += length;
+  }
+  REQUIRE(without.size() + 20 < whole.size());
+  std::vector<std::string> seen;
+  for (const int fill : {0x01, 0x55, 0xfe}) {
+    mallopt(M_PERTURB, fill);
+    try {
+      const Texture texture = decode_texture(without, 1 << 20);
+      seen.emplace_back(reinterpret_cast<const char*>(texture.texels.data()), 4 * texture.texels.size());
+    } catch (const Error& e) {
+      seen.emplace_back(e.what());
+    }
+  }
+  mallopt(M_PERTURB, 0);
+  CHECK(seen[0] == seen[1]);
+  CHECK(seen[0] == seen[2]);
 }
 
 }  // namespace
