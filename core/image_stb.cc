@@ -16,7 +16,7 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wunused-function"
-// All zeros, as stb takes it to be: a JPEG that leaves out a Huffman table decodes by whatever lies where it should be.
+// All zeros: stb would decode a JPEG that leaves out a Huffman table by whatever memory holds in its place.
 #define STBI_MALLOC(size) std::calloc(1, size)
 #define STBI_REALLOC(memory, size) std::realloc(memory, size)
 #define STBI_FREE(memory) std::free(memory)
