@@ -22,8 +22,8 @@ enum RandomPurpose : uint32_t {
 };
 
 // Which of a set's four numbers.
-enum PathDraw : uint32_t { kDrawU = 0, kDrawV = 1 };
-enum ChoiceDraw : uint32_t { kDrawLobe = 0, kDrawRoulette = 1, kDrawFirstPatch = 2 };
+enum PathDraw : uint32_t { kDrawU = 0, kDrawV = 1, kDrawEmitU = 2, kDrawEmitV = 3 };  // the last two: of light paths
+enum ChoiceDraw : uint32_t { kDrawLobe = 0, kDrawRoulette = 1, kDrawFirstPatch = 2, kDrawCaster = 3 };
 enum LightDraw : uint32_t { kDrawPatch = 0, kDrawSphere = 1, kDrawLightU = 2, kDrawLightV = 3 };
 enum EnvironmentDraw : uint32_t { kDrawSkyRow = 0, kDrawSkyColumn = 1, kDrawSkyX = 2, kDrawSkyY = 3 };
 
@@ -36,12 +36,16 @@ constexpr bool is_first_light_sample(const Step& step) { return step.light == 0 
 
 // What the numbers of samples beyond the first 2^32 of a pixel have in their seed beside the user's: a permutation of sample / 2^32,
 // 0 for 0, all of whose bits hang on all (the finaliser of splitmix64: Steele, Lea & Flood, OOPSLA 2014).
-constexpr uint64_t epoch_of(uint64_t sample) {
-  uint64_t x = sample >> 32;
+constexpr uint64_t mix_epoch(uint64_t x) {
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
   x = (x ^ x >> 27) * 0x94d049bb133111ebu;
   return x ^ x >> 31;
 }
+constexpr uint64_t epoch_of(uint64_t sample) { return mix_epoch(sample >> 32); }
+
+// The same for the light paths of a lamp. Its path number n has the numbers of sample n % 2^kSequenceBits of "pixel"
+// n / 2^kSequenceBits: so those of a sequence share a picture, not a pixel.
+constexpr uint64_t light_path_epoch(uint32_t light) { return mix_epoch((uint64_t{1} << 40) + light); }
 
 // Where a second, independent estimate of a pixel begins to count its samples; so a first one has no more than these.
 constexpr uint64_t kSecondEstimate = uint64_t{1} << 63;
@@ -49,5 +53,10 @@ constexpr uint64_t kSecondEstimate = uint64_t{1} << 63;
 // A Sobol sequence is this long; a pixel's further samples come from further sequences, scrambled afresh. Samples
 // first .. first + 2^k - 1 are a net of it (at their best together) where first is a multiple of 2^k.
 constexpr uint32_t kSequenceBits = 16;
+
+constexpr uint32_t light_path_pixel(uint64_t number) { return static_cast<uint32_t>(number >> kSequenceBits); }
+constexpr uint32_t light_path_sample(uint64_t number) {
+  return static_cast<uint32_t>(number) & ((1u << kSequenceBits) - 1);
+}
 
 }  // namespace lanewise

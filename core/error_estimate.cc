@@ -122,13 +122,21 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squ
   return with_interval(picture, sum_relative(picture, squares, threads), 0);
 }
 
-ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, uint32_t threads) {
+ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* light, const Probes& probes,
+                             uint32_t threads) {
+  MeanPicture with_light;
+  if (light) {
+    with_light = picture;
+    for (size_t i = 0; i < picture.pixels.size(); ++i)
+      with_light.pixels[i] = sum_of(picture.pixels[i], light->pixels[i]);
+  }
+  const MeanPicture& whole = light ? with_light : picture;
   const auto place = [&](size_t i) {
     return std::pair(static_cast<uint32_t>(i % picture.width), static_cast<uint32_t>(i / picture.width));
   };
   const auto sum_variances = [&](bool fireflies) {
     return sum_relative(
-        picture,
+        whole,
         [&](size_t i) {
           const auto [x, y] = place(i);
           const double v = picture.pixels[i].variance;
@@ -138,6 +146,11 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, u
         threads);
   };
   const Sums calm = sum_variances(false), fireflies = sum_variances(true);
+  const auto light_variance = [&](size_t i) {
+    const double v = light->pixels[i].variance;
+    return std::array<double, 3>{v, v, v};
+  };
+  const Sums by_light = light ? sum_relative(whole, light_variance, threads) : Sums{};
 
   // The ratio of what squared differences say to what variances say (Cochran, Sampling Techniques, 1977, ch. 6): bright paths
   // that chance has dealt to the probes are in both. Fireflies are left out, whose ratio is 1.
@@ -153,7 +166,8 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, u
     for (size_t c = 0; c < 3; ++c) difference2[c] = std::pow(double{first.rgb[c]} - second.rgb[c], 2);
     std::array<double, 2> term{};
     for (const PixelMean& one : {first, second}) {
-      const std::array<double, 3> truth = likely_value(picture, x, y, one);
+      const PixelMean centre = light ? sum_of(one, light->pixels[i]) : one;
+      const std::array<double, 3> truth = likely_value(whole, x, y, centre);
       term[0] += relative(difference2, truth);
       term[1] += relative({v, v, v}, truth);
     }
@@ -169,7 +183,8 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, u
     for (const auto& [d, v] : terms) residues += std::pow(d - factor * v, 2);
     variance = n / std::max(n - 1, 1.0) * residues / (by_difference * by_difference);
   }
-  const Sums all{factor * calm.terms + fireflies.terms, factor * factor * calm.squares + fireflies.squares};
+  const Sums all{factor * calm.terms + fireflies.terms + by_light.terms,
+                 factor * factor * calm.squares + fireflies.squares + by_light.squares};
   const double share = all.terms > 0 ? factor * calm.terms / all.terms : 0;
   return with_interval(picture, all, share * share * variance);
 }

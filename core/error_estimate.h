@@ -31,7 +31,9 @@ using SquaredError = std::function<std::array<double, 3>(size_t pixel)>;
 ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squares, uint32_t threads);
 
 // From the variances in the picture alone, times the factor that the probes measure: samples that are not independent,
-// as those of a low-discrepancy sequence, have less error than their variance says.
-ErrorEstimate estimate_error(const MeanPicture& picture, const Probes& probes, uint32_t threads);
+// as those of a low-discrepancy sequence, have less error than their variance says. light: what light paths add to it, with
+// variances of its own, that no factor applies to; null if there are none.
+ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* light, const Probes& probes,
+                             uint32_t threads);
 
 }  // namespace lanewise

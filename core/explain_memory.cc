@@ -5,6 +5,7 @@
 #include "core/explain_topics.h"
 #include "core/film.h"
 #include "core/path_buffer.h"
+#include "core/plan_light_paths.h"
 #include "core/stats.h"
 
 namespace lanewise {
@@ -78,11 +79,13 @@ MemoryNeed memory_need(const Plan& plan, bool saved) {
   const size_t pixels = size_t{settings.width} * settings.height, shown = size_t{window.width} * window.height;
   // Those of --noise are in two halves, with an estimate of each.
   const size_t sums = sizeof(PixelSums) + sizeof(uint64_t);
-  const size_t drawn = settings.noise > 0 ? 2 * (sums + sizeof(std::array<double, 3>)) : sums;
+  const size_t films = has_light_paths(plan) ? 2 * sums : sums;
+  const size_t drawn = settings.noise > 0 ? 2 * (sums + sizeof(std::array<double, 3>)) : films;
   const size_t picture = 3 * sizeof(float) + sizeof(uint64_t);
   constexpr size_t kEncoded = 6 * sizeof(float);  // of a pixel, in any format, with what it is made from
   // Means; with --noise also their squared errors, both in arrays that grow.
-  const size_t mean = settings.noise > 0 ? 3 * (sizeof(PixelMean) + 3 * sizeof(float)) : sizeof(PixelMean);
+  const size_t pictures = has_light_paths(plan) ? 3 : 1;  // without, with and of the light paths alone
+  const size_t mean = settings.noise > 0 ? 3 * (sizeof(PixelMean) + 3 * sizeof(float)) : pictures * sizeof(PixelMean);
   const size_t means = settings.estimate_error ? mean : 0;
   return {.scene = add_scene(plan, ignored),
           .film = drawn * pixels + picture * shown,
@@ -98,7 +101,14 @@ void explain_memory(const Plan& plan, std::vector<Decision>& out) {
   const bool noise = settings.noise > 0;
   const size_t threads = thread_count(settings);
   Memory memory(out);
-  memory.add("film", noise ? "two halves" : "sums, picture", noise ? "each ends the other's estimate" : "exact sums",
+  const bool light = has_light_paths(plan);
+  memory.add("film",
+             noise   ? "two halves"
+             : light ? "two sums, picture"
+                     : "sums, picture",
+             noise   ? "each ends the other's estimate"
+             : light ? "exact sums, also of light paths"
+                     : "exact sums",
              need.film, "per_pixel", pixels);
   memory.add("paths", count_of(threads, "thread"),
              "three buffers of " + std::to_string(settings.wave) +

@@ -5,6 +5,7 @@
 
 #include "core/explain_topics.h"
 #include "core/plan_connections.h"
+#include "core/plan_light_paths.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -101,6 +102,12 @@ std::string only_bounce(const Settings& settings, uint32_t ahead) {
   return settings.only_bounce ? "; only at bounce " + std::to_string(*settings.only_bounce - ahead) : "";
 }
 
+std::string light_paths_text(const Plan& plan) {
+  uint64_t paths = 0;
+  for (const LampPaths& lamp : plan.lamp_paths) paths += lamp.per_pass;
+  return count_of(paths, "light path") + " a pass, aimed at " + count_of(plan.casters.size(), "caster");
+}
+
 std::string why_so(const Plan& plan, Stage stage) {
   const Settings& settings = plan.settings;
   const bool trees = !plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty();
@@ -150,6 +157,16 @@ std::string why_so(const Plan& plan, Stage stage) {
     case Stage::kShadeMicrofacet:
       if (settings.course.any()) return "--model: the course program's lobe, not Beckmann's";
       return "";
+    case Stage::kTakeLamps:
+      return "paths leave caustics to light paths";
+    case Stage::kEmit:
+      return light_paths_text(plan);
+    case Stage::kAdjoint:
+      return "corner normals scatter light paths otherwise";
+    case Stage::kConnectCamera:
+      return settings.lens_radius > 0 ? "from diffuse vertices to points of the lens" : "from diffuse vertices";
+    case Stage::kSplat:
+      return "to a film of their own";
     case Stage::kRoulette:
       return "from bounce " + std::to_string(kRouletteBounce) + " on";
     default:
@@ -204,6 +221,14 @@ std::string why_left_out(const Plan& plan, Stage stage) {
       return why_no_material(plan, kMirror);
     case Stage::kShadeGlass:
       return why_no_material(plan, kGlass);
+    case Stage::kAdjoint:
+      if (*why_no_light_paths(plan) == '\0' && plan.prim_normals.empty()) return "flat faces alone";
+      return why_no_light_paths(plan);
+    case Stage::kTakeLamps:
+    case Stage::kEmit:
+    case Stage::kConnectCamera:
+    case Stage::kSplat:
+      return why_no_light_paths(plan);
     case Stage::kRoulette:
       if (const std::string why = why_nothing_scatters(plan); !why.empty()) return why;
       if (plan.settings.max_depth > kRouletteBounce) return "";
@@ -260,17 +285,18 @@ void explain_light(const Plan& plan, std::vector<Decision>& out) {
 
 // What the sort of a wave moves: see Wave's constructor.
 void explain_state(const Plan& plan, std::vector<Decision>& out) {
-  const bool flat = plan.prim_normals.empty();
-  const uint32_t left = flat ? words("u v") : 0, moved = words("KEPT") - left;
+  const bool flat = plan.prim_normals.empty(), light = has_light_paths(plan);
+  const uint32_t left = (flat ? words("u v") : 0) + (light ? 0 : words("lamps")), moved = words("KEPT") - left;
   const auto figures = [](uint32_t fields) {
     return std::vector<Figure>{{"fields", double{1} * fields}, {"per_path", 4.0 * fields, FigureUnit::kBytes}};
   };
   out.push_back({"state", "living path", "moved by the sort", "the next stages read them", figures(moved)});
   out.push_back({"state", "finished path", "moved by the sort", "slot and radiance: all that retire reads",
                  figures(kRetiredFields)});
-  if (left > 0) {
-    out.push_back({"state", "u, v", "left in place", "no corner normals to mix with them", figures(left)});
+  if (flat) {
+    out.push_back({"state", "u, v", "left in place", "no corner normals to mix with them", figures(words("u v"))});
   }
+  if (!light) out.push_back({"state", "lamps", "left in place", "no light paths", figures(words("lamps"))});
 }
 
 }  // namespace lanewise

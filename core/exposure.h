@@ -8,6 +8,8 @@
 
 #include "core/error_estimate.h"
 #include "core/image.h"
+#include "core/light_film.h"
+#include "core/plan_light_paths.h"
 #include "core/pixel_sums.h"
 
 namespace lanewise {
@@ -16,6 +18,18 @@ namespace lanewise {
 // `worker`; returns how many rays that took.
 using Draw = std::function<uint64_t(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count,
                                     PixelSums* sums, uint32_t worker)>;
+
+// Draws light paths.
+class LightPathDraw {
+ public:
+  virtual ~LightPathDraw() = default;
+  // How many threads may draw at a time.
+  virtual uint32_t workers() const = 0;
+  // Passes first .. first + passes - 1 in pieces.
+  virtual std::vector<LightPiece> pieces(uint64_t first, uint64_t passes) const = 0;
+  // Adds what the camera sees of a piece, on the thread that is called `worker`; returns how many rays that took.
+  virtual uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) = 0;
+};
 
 // The picture of settings.window().
 struct Exposure {

@@ -5,17 +5,21 @@
 
 namespace lanewise {
 
-Image develop(const Film& film, uint32_t width, const Window& window) {
+Image develop(const Film& film, uint32_t width, const Window& window, const Film* light) {
   Image image(window.width, window.height);
   for (uint32_t y = 0; y < window.height; ++y) {
     for (uint32_t x = 0; x < window.width; ++x) {
       const size_t i = size_t{window.y + y} * width + window.x + x;
-      if (film.samples[i] == 0) continue;
-      const double scale = 1 / static_cast<double>(film.samples[i]);
-      float* rgb = image.pixel(x, y);
-      rgb[0] = static_cast<float>(film.sums[i].r.as<double>() * scale);
-      rgb[1] = static_cast<float>(film.sums[i].g.as<double>() * scale);
-      rgb[2] = static_cast<float>(film.sums[i].b.as<double>() * scale);
+      double sum[3] = {};
+      for (const Film* part : {&film, light}) {
+        if (!part || part->samples[i] == 0) continue;
+        const double scale = 1 / static_cast<double>(part->samples[i]);
+        const PixelSums& sums = part->sums[i];
+        sum[0] += sums.r.as<double>() * scale;
+        sum[1] += sums.g.as<double>() * scale;
+        sum[2] += sums.b.as<double>() * scale;
+      }
+      for (size_t c = 0; c < 3; ++c) image.pixel(x, y)[c] = static_cast<float>(sum[c]);
     }
   }
   return image;
@@ -35,6 +39,10 @@ PixelMean pixel_mean(const PixelSums& sums, uint64_t samples) {
   return {{static_cast<float>(sums.r.as<double>() * scale), static_cast<float>(sums.g.as<double>() * scale),
            static_cast<float>(sums.b.as<double>() * scale)},
           static_cast<float>(luminance_variance(sums, samples) * scale)};
+}
+
+PixelMean sum_of(const PixelMean& a, const PixelMean& b) {
+  return {{a.rgb[0] + b.rgb[0], a.rgb[1] + b.rgb[1], a.rgb[2] + b.rgb[2]}, a.variance + b.variance};
 }
 
 MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window) {

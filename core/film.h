@@ -28,8 +28,9 @@ struct Film {
   explicit Film(size_t pixels) : sums(pixels), samples(pixels) {}
 };
 
-// The mean of each pixel of the window, and how many samples it is of. width: of the whole picture.
-Image develop(const Film& film, uint32_t width, const Window& window);
+// The mean of each pixel of the window, and how many samples it is of. width: of the whole picture. light: what light paths add,
+// of so many passes; null if there are none.
+Image develop(const Film& film, uint32_t width, const Window& window, const Film* light = nullptr);
 std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window);
 
 // The mean of a pixel's samples, and the variance of the mean's luminance, were they independent.
@@ -42,6 +43,9 @@ struct MeanPicture {
   uint32_t width = 0, height = 0;
   std::vector<PixelMean> pixels;
 };
+
+// Of two independent parts of a pixel's radiance.
+PixelMean sum_of(const PixelMean& a, const PixelMean& b);
 
 PixelMean pixel_mean(const PixelSums& sums, uint64_t samples);
 MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window);

@@ -160,9 +160,19 @@ FilmFile read(const std::string& path) {
 void check_finished(const FilmFile& film) {
   if (film.ranges.empty()) throw Error("it is a checkpoint of a render that is not done");
   const uint64_t samples = samples_in(film.ranges);
-  film.state.get<uint64_t>("picture.samples", film.width, [&](size_t, uint64_t n) {
+  const auto check = [&](size_t, uint64_t n) {
     if (n != samples) throw Error("damaged (samples are missing)");
-  });
+  };
+  film.state.get<uint64_t>("picture.samples", film.width, check);
+  if (film.state.has_film("light")) film.state.get<uint64_t>("light.samples", film.width, check);
+}
+
+Film sum_of(Film film, const Film& more) {
+  for (size_t i = 0; i < film.sums.size(); ++i) {
+    film.sums[i] += more.sums[i];
+    film.samples[i] += more.samples[i];
+  }
+  return film;
 }
 
 void add_ranges(std::vector<SampleRange>& ranges, const std::vector<SampleRange>& others) {
@@ -237,7 +247,9 @@ FilmFile read_film(const std::string& path, bool finished) {
     FilmFile film = read(path);
     if (finished) {
       check_finished(film);
-      std::erase_if(film.state.channels, [](const SavedRender::Channel& c) { return !c.name.starts_with("picture."); });
+      std::erase_if(film.state.channels, [](const SavedRender::Channel& c) {
+        return !c.name.starts_with("picture.") && !c.name.starts_with("light.");
+      });
     }
     film.state.path = path;
     return film;
@@ -250,20 +262,17 @@ FilmFile read_film(const std::string& path, bool finished) {
 }
 
 void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) {
-  Film sum = film.state.own_film("picture");
-  const Film more = other.state.own_film("picture");
   try {
     if (const std::string d = difference(film.identity, other.identity); !d.empty()) throw Error(d);
     if (other.state.area != film.state.area) throw Error("it has other pixels");
     add_ranges(film.ranges, other.ranges);
-    for (size_t i = 0; i < sum.sums.size(); ++i) {
-      sum.sums[i] += more.sums[i];
-      sum.samples[i] += more.samples[i];
-    }
     SavedRender merged;
     merged.area = film.state.area;
     merged.path = film.state.path;
-    merged.put_own_film("picture", sum);
+    for (const char* name : {"picture", "light"}) {
+      if (name == std::string_view("light") && !film.state.has_film(name) && !other.state.has_film(name)) continue;
+      merged.put_own_film(name, sum_of(film.state.own_film(name), other.state.own_film(name)));
+    }
     merged.seconds = film.state.seconds + other.state.seconds;
     merged.invalid_samples = film.state.invalid_samples + other.state.invalid_samples;
     film.state = std::move(merged);
@@ -277,7 +286,10 @@ void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) 
 Image develop(const FilmFile& film) {
   const Window all{0, 0, film.state.area.width, film.state.area.height};
   // The two halves of --noise are not brought together: a look at the first must do while it is not done.
-  return develop(film.state.own_film(film.state.has_film("picture") ? "picture" : "half0"), all.width, all);
+  const Film picture = film.state.own_film(film.state.has_film("picture") ? "picture" : "half0");
+  if (!film.state.has_film("light")) return develop(picture, all.width, all);
+  const Film light = film.state.own_film("light");
+  return develop(picture, all.width, all, &light);
 }
 
 }  // namespace lanewise

@@ -25,16 +25,31 @@ void run_batches(Wave& wave, Batch batch, size_t pixels, PixelSums* sums) {
 
 }  // namespace
 
-Drawn LocalDraw::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
-                      uint32_t worker, const uint32_t* slots) {
+Wave& LocalDraw::wave(uint32_t worker) {
   std::unique_ptr<Wave>& wave = waves_[worker];
   // By its own thread, so that its memory is near.
   if (!wave) wave = std::make_unique<Wave>(plan_, plan_.settings.wave, detail_);
-  const Profile& profile = wave->profiler().profile;
+  return *wave;
+}
+
+Drawn LocalDraw::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
+                      uint32_t worker, const uint32_t* slots) {
+  Wave& wave = this->wave(worker);
+  const Profile& profile = wave.profiler().profile;
   const Drawn before{profile.rays(), profile.invalid_samples};
-  run_batches(*wave, {.pixels = pixels.data(), .slots = slots, .samples = count, .first_sample = first}, pixels.size(),
+  run_batches(wave, {.pixels = pixels.data(), .slots = slots, .samples = count, .first_sample = first}, pixels.size(),
               sums);
   return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
+}
+
+Drawn LocalDraw::draw_light(const LightPiece& piece, Splats& splats, uint32_t worker) {
+  Wave& wave = this->wave(worker);
+  const Profile& profile = wave.profiler().profile;
+  const uint64_t rays = profile.rays(), invalid = splats.invalid;
+  for (uint32_t done = 0; done < piece.count; done += wave.size()) {
+    wave.run_light_paths(piece.light, piece.first + done, std::min(wave.size(), piece.count - done), splats);
+  }
+  return {profile.rays() - rays, splats.invalid - invalid};
 }
 
 std::vector<Profile> LocalDraw::profiles() const {

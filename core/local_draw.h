@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/plan.h"
+#include "core/plan_light_paths.h"
 #include "core/profiler.h"
 #include "core/wave.h"
 
@@ -27,11 +28,16 @@ class LocalDraw {
   Drawn draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums, uint32_t worker,
              const uint32_t* slots = nullptr);
 
+  // Adds what the camera sees of these light paths.
+  Drawn draw_light(const LightPiece& piece, Splats& splats, uint32_t worker);
+
   // While no thread draws; of each that has.
   std::vector<Profile> profiles() const;
   std::vector<std::vector<LoggedCall>> logs() const;
 
  private:
+  Wave& wave(uint32_t worker);
+
   const Plan& plan_;
   ProfileDetail detail_;
   std::vector<std::unique_ptr<Wave>> waves_;

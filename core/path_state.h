@@ -33,6 +33,7 @@ namespace lanewise {
   KEPT(float, beta_g, "")                                                                                \
   KEPT(float, beta_b, "")                                                                                \
   KEPT(float, pdf, "density of d per steradian when last scattered; 0: camera, delta; or kConnected")    \
+  KEPT(uint32_t, lamps, "LampsBy: who brings the light of lamps that are met, or sampled, next")         \
   KEPT(uint32_t, prim, "primitive hit, or kNoPrim")                                                      \
   KEPT(float, t, "distance to the hit, +inf for none")                                                   \
   KEPT(float, u, "barycentric weight of a triangle's second vertex at the hit (0 for spheres)")          \
@@ -56,6 +57,7 @@ namespace lanewise {
   LOCAL(float, c_r, "radiance that the light sample adds to L if it is seen; not yet what via reflects") \
   LOCAL(float, c_g, "")                                                                                  \
   LOCAL(float, c_b, "")                                                                                  \
+  LOCAL(uint32_t, raster, "light path: the pixel in which the camera sees the vertex")                   \
   LOCAL(float, a_r, "albedo of a diffuse surface, where the scene has textures")                         \
   LOCAL(float, a_g, "")                                                                                  \
   LOCAL(float, a_b, "")
@@ -66,13 +68,24 @@ constexpr int kRetiredFields = 4;  // slot and L
 // light is met next has been counted there.
 constexpr float kConnected = -1;
 
+// Where there are light paths, they bring what lamps (lights other than the environment) send to a diffuse surface that the camera
+// sees, at once or by way of further surfaces of any kind, through a first one that is not diffuse: see core/plan_light_paths.h.
+enum LampsBy : uint32_t {
+  kByItself,  // the camera sees a surface that is not diffuse, or there are no light paths: this path looks for all lamps
+  kByItselfYet,   // a diffuse one, and the last one is diffuse: this path does
+  kByLightPaths,  // a diffuse one, and the last one is not
+};
+
 // What all paths of a wave share at one moment.
 struct Step {
   uint32_t bounce = 0;        // scattering events behind every live path
   uint32_t light = 0;         // the light that sample_light samples
   uint32_t light_sample = 0;  // which of the plan's samples of that light
   bool connection = false;    // by way of a sphere: see core/plan_connections.h
-  uint64_t epoch = 0;         // epoch_of() their samples: 0 for a pixel's first 2^32
+  uint64_t epoch = 0;         // epoch_of() their samples: 0 for a pixel's first 2^32; or light_path_epoch()
+  bool from_light = false;    // these are light paths
+  bool diffuse = false;       // take_lamps: at diffuse surfaces
+  bool leaving = false;       // take_lamps, adjoint: d leaves the vertex
 };
 
 // The samples that a wave computes: its path i is sample first_sample + j % samples of pixel pixels[j / samples], with

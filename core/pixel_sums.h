@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -29,6 +30,13 @@ class ExactSum {
   explicit constexpr ExactSum(Uint128 units) : units_(units) {}
 
   void add(double x) {
+    // Its digits as they are, where none is below the units'.
+    const auto bits = std::bit_cast<uint64_t>(x);
+    const int shift = static_cast<int>(bits >> 52) - 1075 + kPlaces;
+    if (shift >= 0 && shift < 128 - 53) {
+      *this += ExactSum(Uint128{(bits & 0xfffffffffffffu) | uint64_t{1} << 52} << shift);
+      return;
+    }
     const double units = std::nearbyint(std::ldexp(x, kPlaces));
     *this += ExactSum(units < 0x1p128 ? static_cast<Uint128>(units) : ~Uint128{0});
   }

@@ -11,6 +11,7 @@
 #include "core/framing.h"
 #include "core/plan_connections.h"
 #include "core/plan_flat.h"
+#include "core/plan_light_paths.h"
 #include "core/plan_lights.h"
 #include "core/plan_textures.h"
 #include "core/plan_trees.h"
@@ -72,11 +73,13 @@ class Planner {
     choose_flat_meshes();
     add_triangles();
     add_spheres();
-    find_blocking_faces(plan_, corners_, spheres_);
+    choose_light_paths(plan_, corners_, spheres_);
+    find_blocking_faces(plan_, corners_, has_light_paths(plan_) ? spheres_and_camera() : spheres_);
     find_slabs(plan_);
     plan_.environment = make_environment_map(scene_.environment, box_.diagonal(), scene_.up.y > 0.5);
     if (!plan_.environment.empty()) let_all_faces_block(plan_);
     build_trees();
+    drop_unseen_light_paths(plan_, box_.hi - box_.lo);
     focus();
     choose_stages();
     connect_spheres(plan_);
@@ -96,6 +99,16 @@ class Planner {
     copy(framing.up, out.up);
     out.pixel = static_cast<float>(framing.pixel);
     out.lens_radius = static_cast<float>(plan_.settings.lens_radius);
+  }
+
+  // Light paths send shadow rays there.
+  std::vector<FlatSphere> spheres_and_camera() const {
+    std::vector<FlatSphere> spheres = spheres_;
+    FlatSphere camera{};
+    std::copy_n(plan_.camera.eye, 3, camera.center);
+    camera.radius = plan_.camera.lens_radius;
+    spheres.push_back(camera);
+    return spheres;
   }
 
   void focus() {

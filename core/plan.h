@@ -97,6 +97,20 @@ struct ConnectedSphere {
   float importance = 0;  // a vertex at distance r chooses it with a chance that goes with importance (radius / r)^2
 };
 
+// A sphere around surfaces that are not diffuse: light paths aim at them.
+struct Caster {
+  float center[3] = {0, 0, 0};
+  float radius = 0;
+};
+
+// How a lamp sends out its light paths.
+struct LampPaths {
+  uint32_t per_pass = 0;  // paths of one pass: there is a pass for every sample of the pixels
+  float throughput =
+      0;  // beta at the start = radiance / the largest of its channels * throughput * cosine * solid angle of the casters
+  float scale = 0;  // radiance that beta = 1 stands for, times solid angle and area
+};
+
 // A triangle or sphere outside the trees, tested by whole vectors of rays.
 struct FlatTriangle {
   float v[3][3];  // vertex, axis
@@ -208,6 +222,9 @@ struct Plan {
   std::vector<PlanLight> lights;
   AlignedVector<float> light_table;                // 4 a light, to gather by light: radiance, area
   std::vector<ConnectedSphere> connected_spheres;  // all mirrors and glasses among the spheres, or none
+  std::vector<Caster> casters;                     // empty: there are no light paths
+  float shown = 1;                                 // what drop_unseen_light_paths has found
+  std::vector<LampPaths> lamp_paths;               // of each of the lights; empty as casters
   EnvironmentMap environment;                      // around the scene; empty: black
 
   // Where rays look for them: every primitive is in exactly one of quads, triangles, spheres and the two trees. Of quads and triangles the first are

@@ -45,12 +45,13 @@ struct Profile {
   uint64_t waves = 0, calm_waves = 0;
   uint64_t wave_nanoseconds = 0, calm_wave_nanoseconds = 0;
   uint64_t samples = 0;
+  uint64_t light_paths = 0;
   uint64_t bounce_rays = 0;
   uint64_t shadow_rays = 0;
   uint64_t invalid_samples = 0;
   std::vector<uint64_t> paths_by_length;  // by scattering events
 
-  uint64_t rays() const { return samples + bounce_rays + shadow_rays; }
+  uint64_t rays() const { return samples + light_paths + bounce_rays + shadow_rays; }
 
   StageCounter& at(Stage stage, uint32_t bounce) {
     bounce = std::min(bounce, kProfiledBounces - 1);
@@ -91,6 +92,7 @@ struct Profile {
     wave_nanoseconds += other.wave_nanoseconds;
     calm_wave_nanoseconds += other.calm_wave_nanoseconds;
     samples += other.samples;
+    light_paths += other.light_paths;
     bounce_rays += other.bounce_rays;
     shadow_rays += other.shadow_rays;
     invalid_samples += other.invalid_samples;

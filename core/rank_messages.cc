@@ -32,8 +32,9 @@ void put(ByteWriter& out, const Profile& profile) {
     }
   }
   out.put(profile.paths_by_length);
-  for (const uint64_t n : {profile.waves, profile.calm_waves, profile.wave_nanoseconds, profile.calm_wave_nanoseconds,
-                           profile.samples, profile.bounce_rays, profile.shadow_rays, profile.invalid_samples}) {
+  for (const uint64_t n :
+       {profile.waves, profile.calm_waves, profile.wave_nanoseconds, profile.calm_wave_nanoseconds, profile.samples,
+        profile.light_paths, profile.bounce_rays, profile.shadow_rays, profile.invalid_samples}) {
     out.put(n);
   }
 }
@@ -46,8 +47,9 @@ Profile get_profile(ByteReader& in) {
     }
   }
   profile.paths_by_length = in.list<uint64_t>();
-  for (uint64_t* n : {&profile.waves, &profile.calm_waves, &profile.wave_nanoseconds, &profile.calm_wave_nanoseconds,
-                      &profile.samples, &profile.bounce_rays, &profile.shadow_rays, &profile.invalid_samples}) {
+  for (uint64_t* n :
+       {&profile.waves, &profile.calm_waves, &profile.wave_nanoseconds, &profile.calm_wave_nanoseconds,
+        &profile.samples, &profile.light_paths, &profile.bounce_rays, &profile.shadow_rays, &profile.invalid_samples}) {
     *n = in.get<uint64_t>();
   }
   return profile;

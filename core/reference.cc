@@ -5,11 +5,15 @@
 #include <numeric>
 
 #include "core/plan_connections.h"
+#include "core/plan_light_paths.h"
 #include "core/render.h"
 #include "core/schedule.h"
 #include "core/stats.h"
+#include "kernels/reference/adjoint.h"
+#include "kernels/reference/connect_camera.h"
 #include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
+#include "kernels/reference/emit.h"
 #include "kernels/reference/environment.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
@@ -25,6 +29,7 @@
 #include "kernels/reference/shade_mirror.h"
 #include "kernels/reference/shade_rough_glass.h"
 #include "kernels/reference/surface.h"
+#include "kernels/reference/take_lamps.h"
 #include "kernels/reference/texture.h"
 
 namespace lanewise {
@@ -95,6 +100,13 @@ void add_direct_light(const Plan& plan, Path<T>& p, Profile& profile) {
   }
 }
 
+template <class T>
+void take_lamps(const Plan& plan, Path<T>& p, bool leaving) {
+  p.step.diffuse = p.bin == kDiffuse;
+  p.step.leaving = leaving;
+  if (has_light_paths(plan)) reference::take_lamps(plan, p);
+}
+
 // Follows the path of (p.pixel, p.sample) to its end; its radiance is left in L.
 template <class T>
 void trace(const Plan& plan, Path<T>& p, Profile& profile) {
@@ -111,10 +123,48 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
     if (p.bin >= kSurfaceBins) return profile.count_paths(bounce, 1);
     reference::surface(plan, p);
     if (!plan.textures.empty() && p.bin == kDiffuse) reference::texture(plan, p);
+    take_lamps(plan, p, false);
     add_direct_light(plan, p, profile);
     shade(plan, p);
+    if (!plan.prim_normals.empty()) take_lamps(plan, p, true);
     reference::roulette(plan, p);
     if (p.beta_r == 0 && p.beta_g == 0 && p.beta_b == 0) return profile.count_paths(bounce + 1, 1);
+  }
+}
+
+template <class T>
+void take_adjoint(const Plan& plan, Path<T>& p, bool leaving) {
+  p.step.leaving = leaving;
+  if (!plan.prim_normals.empty()) reference::adjoint(plan, p);
+}
+
+// The same of a light path; see(p) where the camera sees p.L of it.
+template <class T, class See>
+void trace_light_path(const Plan& plan, Path<T>& p, Profile& profile, const See& see) {
+  p.step.from_light = true;
+  reference::emit(plan, p);
+  ++profile.light_paths;
+  for (uint32_t bounce = 0;; ++bounce) {
+    p.step.bounce = bounce;
+    if (bounce > 0) ++profile.bounce_rays;
+    reference::intersect(plan, p);
+    if (p.bin >= kSurfaceBins || (bounce == 0 && p.bin == kDiffuse)) return;
+    reference::surface(plan, p);
+    take_adjoint(plan, p, false);
+    if (p.bin == kDiffuse && !plan.textures.empty()) reference::texture(plan, p);
+    if (p.bin == kDiffuse && plan.settings.shows(bounce + 1)) {
+      reference::connect_camera(plan, p);
+      if (!is_black(p)) {
+        ++profile.shadow_rays;
+        reference::occlude(plan, p);
+      }
+      see(p);
+    }
+    if (bounce + 1 == plan.settings.max_depth) return;
+    shade(plan, p);
+    take_adjoint(plan, p, true);
+    reference::roulette(plan, p);
+    if (p.beta_r == 0 && p.beta_g == 0 && p.beta_b == 0) return;
   }
 }
 
@@ -141,6 +191,41 @@ void sample_pixel(const Plan& plan, uint32_t pixel, uint64_t sample, PixelSums& 
   }
 }
 
+template <class T>
+class LightPaths : public LightPathDraw {
+ public:
+  LightPaths(const Plan& plan, std::vector<Profile>& profiles) : plan_(plan), profiles_(profiles) {}
+
+  uint32_t workers() const override { return thread_count(plan_.settings); }
+  std::vector<LightPiece> pieces(uint64_t first, uint64_t passes) const override {
+    return light_pieces(plan_, first, passes);
+  }
+  uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) override {
+    Profile& profile = profiles_[worker];
+    const uint64_t before = profile.rays();
+    std::vector<Splat> splats;
+    const auto see = [&](const Path<T>& p) {
+      if (!is_valid(p)) ++profile.invalid_samples;
+      if (!is_valid(p) || (p.L_r == 0 && p.L_g == 0 && p.L_b == 0)) return;
+      splats.push_back({p.raster, static_cast<float>(p.L_r), static_cast<float>(p.L_g), static_cast<float>(p.L_b)});
+    };
+    for (uint32_t i = 0; i < piece.count; ++i) {
+      const uint64_t number = piece.first + i;
+      Path<T> p;
+      p.pixel = light_path_pixel(number);
+      p.sample = light_path_sample(number);
+      p.step = {.light = piece.light, .epoch = light_path_epoch(piece.light)};
+      trace_light_path(plan_, p, profile, see);
+    }
+    film.add(splats);
+    return profile.rays() - before;
+  }
+
+ private:
+  const Plan& plan_;
+  std::vector<Profile>& profiles_;
+};
+
 }  // namespace
 
 template <class T>
@@ -161,7 +246,8 @@ RenderResult render_reference(const Plan& plan, const RenderControl& control) {
     return std::accumulate(profiles.begin(), profiles.end(), uint64_t{0},
                            [](uint64_t sum, const Profile& p) { return sum + p.invalid_samples; });
   });
-  Exposure exposure = expose(plan.settings, threads, draw, counting);
+  LightPaths<T> light(plan, profiles);
+  Exposure exposure = expose(plan.settings, threads, draw, counting, has_light_paths(plan) ? &light : nullptr);
 
   return make_result(std::move(exposure), profiles, control.resume, std::chrono::steady_clock::now() - start);
 }

@@ -11,6 +11,33 @@
 #include "core/stats.h"
 
 namespace lanewise {
+namespace {
+
+// On this process's threads.
+class LightPaths : public LightPathDraw {
+ public:
+  LightPaths(const Plan& plan, LocalDraw& local, std::atomic<uint64_t>& invalid)
+      : plan_(plan), local_(local), invalid_(invalid) {}
+
+  uint32_t workers() const override { return thread_count(plan_.settings); }
+  std::vector<LightPiece> pieces(uint64_t first, uint64_t passes) const override {
+    return light_pieces(plan_, first, passes);
+  }
+  uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) override {
+    Splats splats;
+    const Drawn took = local_.draw_light(piece, splats, worker);
+    film.add(splats.list);
+    invalid_ += took.invalid_samples;
+    return took.rays;
+  }
+
+ private:
+  const Plan& plan_;
+  LocalDraw& local_;
+  std::atomic<uint64_t>& invalid_;
+};
+
+}  // namespace
 
 RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetail detail) {
   const auto start = std::chrono::steady_clock::now();
@@ -24,9 +51,10 @@ RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetai
     invalid += took.invalid_samples;
     return took.rays;
   };
+  LightPaths light(plan, local, invalid);
   const RenderControl counting = count_invalid(control, [&] { return invalid.load(); });
   const uint32_t workers = threads + (control.remote ? control.remote->workers() : 0);
-  Exposure exposure = expose(plan.settings, workers, draw, counting);
+  Exposure exposure = expose(plan.settings, workers, draw, counting, has_light_paths(plan) ? &light : nullptr);
 
   const auto elapsed = std::chrono::steady_clock::now() - start;
   std::vector<Profile> profiles = local.profiles();

@@ -36,6 +36,7 @@ struct RankStats {
 struct RenderStats {
   uint64_t samples = 0;  // also those of probes
   uint64_t camera_rays = 0;
+  uint64_t light_paths = 0;  // the first ray of each; the others are bounce rays and shadow rays
   uint64_t bounce_rays = 0;
   uint64_t shadow_rays = 0;
   uint64_t invalid_samples = 0;           // NaN, Inf or negative radiance: counted as 0 in the picture

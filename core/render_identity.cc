@@ -89,6 +89,7 @@ RenderIdentity render_identity(const Scene& scene, const Settings& s, const std:
           {"max-depth", std::to_string(s.max_depth)},
           {"only-bounce", s.only_bounce ? std::to_string(*s.only_bounce) : "none"},
           {"direct", choice(s.direct)},
+          {"light-paths", choice(s.light_paths)},
           {"connect", choice(s.connect)},
           {"bsdf-sampling", choice(s.bsdf_sampling)},
           {"fresnel", choice(s.fresnel)},

@@ -18,16 +18,20 @@ namespace {
 
 class Rounds {
  public:
-  Rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control)
+  Rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
+         LightPathDraw* light)
       : settings_(settings),
         workers_(workers),
         draw_(draw),
         control_(control),
         intervals_(control),
         film_(size_t{settings.width} * settings.height),
+        light_(light),
         probes_(settings, settings.estimate_error) {
+    if (light_) light_film_.emplace(film_.sums.size());
     if (!control.resume) return;
     control.resume->get_picture(settings, film_);
+    if (light_) resume_light(*control.resume);
     probes_.load(*control.resume);
     done_ = least_samples();
     control.resume->check(probes_.samples() <= done_, "damaged: more probes than samples");
@@ -37,7 +41,7 @@ class Rounds {
     draw_probes();
     while (const uint32_t count = next_round()) {
       const double begin = intervals_.elapsed();
-      const bool whole = draw_tiles(done_ + count);
+      const bool whole = draw_light(done_ + count) && draw_tiles(done_ + count);
       if (whole) done_ += count;
       if (!whole || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
       draw_probes();
@@ -50,6 +54,15 @@ class Rounds {
   }
 
  private:
+  void resume_light(const SavedRender& saved) {
+    Film& film = light_film_->film();
+    saved.get_film("light", settings_.width, film);
+    const std::vector<uint64_t> passes = sample_counts(film, settings_.width, settings_.window());
+    const bool even = std::ranges::all_of(passes, [&](uint64_t n) { return n == passes[0]; });
+    saved.check(even && passes[0] <= settings_.spp, "damaged: its passes of light paths cannot be");
+    std::ranges::fill(film.samples, passes[0]);
+  }
+
   bool timed() const { return settings_.seconds > 0; }
   double drawing_time_left() const { return settings_.seconds - closing_ - intervals_.elapsed(); }
 
@@ -106,6 +119,30 @@ class Rounds {
         [&] { return done_ > 0 && time_is_up(); });
   }
 
+  // Brings the light paths to that many passes, with pauses to save. False if time was up, or the render was stopped, before that.
+  bool draw_light(uint64_t passes) {
+    constexpr uint64_t kPieces = 64;  // between two pauses: a second or so of one thread
+    while (light_ && light_film_->passes() < passes) {
+      if (intervals_.stopped() || (done_ > 0 && timed() && drawing_time_left() <= 0)) return false;
+      const uint64_t first = settings_.first_sample + light_film_->passes(), left = passes - light_film_->passes();
+      const uint64_t some = std::clamp<uint64_t>(kPieces / light_->pieces(first, 1).size(), 1, left);
+      const std::vector<LightPiece> pieces = light_->pieces(first, some);
+      std::atomic<uint64_t> rays{0};
+      run_workers(
+          light_->workers(), pieces.size(),
+          [&](size_t item, uint32_t worker) {
+            rays += light_->draw(pieces[item], *light_film_, worker);
+            return uint64_t{0};
+          },
+          nullptr);
+      rays_ += rays;
+      light_film_->drew(some);
+      intervals_.drew();
+      if (intervals_.save_due()) intervals_.save([&] { return state(); });
+    }
+    return true;
+  }
+
   // Brings them to the samples that the picture has.
   void draw_probes() {
     while (probes_.samples() < done_ && !probes_.pixels().empty()) draw_some_probes();
@@ -137,6 +174,7 @@ class Rounds {
     SavedRender saved;
     saved.area = settings_.window();
     saved.put_film("picture", settings_.width, film_);
+    if (light_film_) saved.put_film("light", settings_.width, light_film_->film());
     probes_.save(saved);
     return saved;
   }
@@ -146,9 +184,12 @@ class Rounds {
     const double begin = intervals_.elapsed();
     const Window window = settings_.window();
     if (probes_.samples() > 1) {
-      error_ = estimate_error(mean_picture(film_, settings_.width, window), probes_, thread_count(settings_));
+      std::optional<MeanPicture> by_light;
+      if (light_film_) by_light = light_picture(light_film_->film(), settings_.width, window);
+      error_ = estimate_error(mean_picture(film_, settings_.width, window), by_light ? &*by_light : nullptr, probes_,
+                              thread_count(settings_));
     }
-    Exposure exposure{.image = develop(film_, settings_.width, window),
+    Exposure exposure{.image = develop(film_, settings_.width, window, light_film_ ? &light_film_->film() : nullptr),
                       .samples = sample_counts(film_, settings_.width, window),
                       .stopped = intervals_.stopped() && done_ < settings_.spp,
                       .error = error_};
@@ -175,6 +216,8 @@ class Rounds {
   uint64_t done_ = 0;              // samples that every pixel has
   uint64_t rays_ = 0;
   Film film_;
+  LightPathDraw* light_;
+  std::optional<LightFilm> light_film_;
   Probes probes_;
   std::optional<ErrorEstimate> error_;
 };
@@ -186,8 +229,9 @@ uint32_t timed_round(uint64_t done, uint64_t most, double fits) {
   return static_cast<uint32_t>(std::clamp(std::floor(0.9 * fits), 1.0, static_cast<double>(longest)));
 }
 
-Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control) {
-  return Rounds(settings, workers, draw, control).expose();
+Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
+                          LightPathDraw* light) {
+  return Rounds(settings, workers, draw, control, light).expose();
 }
 
 }  // namespace lanewise

@@ -14,6 +14,7 @@ namespace lanewise {
 // leaves a tenth of the time to set the rate right by; the last, single sample is for the clock to cut.
 uint32_t timed_round(uint64_t done, uint64_t most, double fits);
 
-Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control);
+Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
+                          LightPathDraw* light);
 
 }  // namespace lanewise

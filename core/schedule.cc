@@ -215,10 +215,11 @@ double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control) {
+Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
+                LightPathDraw* light) {
   if (settings.noise > 0) return ToNoise(settings, workers, draw, control).expose();
   if (settings.adaptive_batch > 0) return Adaptive(settings, draw, control).expose(workers);
-  return expose_in_rounds(settings, workers, draw, control);
+  return expose_in_rounds(settings, workers, draw, control, light);
 }
 
 }  // namespace lanewise

@@ -10,7 +10,8 @@
 
 namespace lanewise {
 
-// workers: how many threads may draw at a time.
-Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control = {});
+// workers: how many threads may draw at a time. light: null if there are no light paths.
+Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control = {},
+                LightPathDraw* light = nullptr);
 
 }  // namespace lanewise

@@ -50,7 +50,8 @@ struct Settings {
   double focal_distance = 1;  // -d: along the view axis, of the plane that the lens shows sharp, > 0
   bool autofocus = false;     // focal_distance becomes that of what is at the picture's centre
   Direct direct = Direct::kMis;
-  bool connect = true;  // connections by way of mirror and glass spheres: see core/plan_connections.h
+  bool light_paths = true;  // where they pay: see core/plan_light_paths.h
+  bool connect = true;      // connections by way of mirror and glass spheres: see core/plan_connections.h
   BsdfSampling bsdf_sampling = BsdfSampling::kVndf;
   Fresnel fresnel = Fresnel::kExact;
   CourseLobe course;

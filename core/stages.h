@@ -34,6 +34,11 @@ namespace lanewise {
   X(kShadeMirror, shade_mirror)             \
   X(kShadeGlass, shade_glass)               \
   X(kRoulette, roulette)                    \
+  X(kTakeLamps, take_lamps)                 \
+  X(kEmit, emit)                            \
+  X(kAdjoint, adjoint)                      \
+  X(kConnectCamera, connect_camera)         \
+  X(kSplat, splat)                          \
   X(kAccumulate, accumulate)
 
 enum class Stage : uint8_t {

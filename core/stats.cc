@@ -12,6 +12,7 @@ namespace {
 RenderStats make_stats(const Profile& profile) {
   RenderStats stats;
   stats.samples = stats.camera_rays = profile.samples;
+  stats.light_paths = profile.light_paths;
   stats.bounce_rays = profile.bounce_rays;
   stats.shadow_rays = profile.shadow_rays;
   stats.invalid_samples = profile.invalid_samples;

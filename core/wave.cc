@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/plan_connections.h"
+#include "core/plan_light_paths.h"
 
 namespace lanewise {
 namespace {
@@ -59,7 +60,16 @@ Kernel* kernel_of(Stage stage) {
       return shade_glass;
     case Stage::kRoulette:
       return roulette;
+    case Stage::kTakeLamps:
+      return take_lamps;
+    case Stage::kEmit:
+      return emit;
+    case Stage::kAdjoint:
+      return adjoint;
+    case Stage::kConnectCamera:
+      return connect_camera;
     case Stage::kSort:
+    case Stage::kSplat:
     case Stage::kAccumulate:
     case Stage::kCount:
       break;
@@ -94,8 +104,10 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     paths = bins.paths(0, kSurfaceBins);
     run(Stage::kSurface, live, paths);
     if (!plan_.textures.empty()) run(Stage::kTexture, bins[kDiffuse]);
+    take_lamps(bins);
     add_direct_light(bins);
     for (const ShadeStages& stages : plan_.shade_stages) run(stages.shade, bins[stages.bin]);
+    leave_lamps(live, paths);
     if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);
   }
 
@@ -108,6 +120,21 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   const auto call = count(Stage::kAccumulate, {0, batch.paths}, batch.paths);
   profile_.samples += batch.paths;
   profile_.invalid_samples += accumulate(state_, film);
+}
+
+void Wave::take_lamps(const Bins& bins) {
+  if (!has_light_paths(plan_)) return;
+  state_.step.diffuse = true;
+  run(Stage::kTakeLamps, bins[kDiffuse]);
+  state_.step.diffuse = false;
+  run(Stage::kTakeLamps, bins.span(kDiffuse + 1, kSurfaceBins), bins.paths(kDiffuse + 1, kSurfaceBins));
+}
+
+void Wave::leave_lamps(Range range, uint32_t paths) {
+  if (!has_light_paths(plan_) || plan_.prim_normals.empty()) return;
+  state_.step.leaving = true;
+  run(Stage::kTakeLamps, range, paths);
+  state_.step.leaving = false;
 }
 
 // Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn, straight and by
@@ -181,6 +208,7 @@ Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;
   spare_.result_b = state_.result_b;
+  if (!has_light_paths(plan)) spare_.lamps = state_.lamps;
   // Barycentric weights that no normal is mixed with need not survive the sort: it leaves what both states share in its place.
   if (plan.prim_normals.empty()) {
     spare_.u = state_.u;

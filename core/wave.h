@@ -4,6 +4,7 @@
 #include "core/path_buffer.h"
 #include "core/plan.h"
 #include "core/profiler.h"
+#include "core/splats.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -16,6 +17,9 @@ class Wave {
   // Computes the batch's samples (at most size() paths) and adds them to their pixels' sums in the film.
   void run(const Batch& batch, PixelSums* film);
 
+  // Follows paths first .. first + paths - 1 (at most size()) of a lamp, and adds what the camera sees of them.
+  void run_light_paths(uint32_t light, uint64_t first, uint32_t paths, Splats& splats);
+
   uint32_t size() const { return size_; }
   const Profiler& profiler() const { return profiler_; }
 
@@ -27,6 +31,11 @@ class Wave {
   Bins sort(Range range, uint32_t paths);
   // Counts a call, and clocks it as long as what is returned lasts.
   Profiler::Call count(Stage stage, Range range, uint32_t paths);
+  void see(Range vertices, Splats& splats);
+  void take_adjoint(Range range, uint32_t paths, bool leaving);
+  // Notes which paths leave the lamps that come next to light paths.
+  void take_lamps(const Bins& bins);
+  void leave_lamps(Range range, uint32_t paths);
   void add_direct_light(const Bins& bins);
   // One sample of the light of state_.step at the vertices in the rough bins: `aim` makes it, `trace` adds it where it is seen,
   // by as many rays each.

@@ -47,7 +47,7 @@ struct ChoiceBound {
 
 // What is not listed keeps its bits.
 struct KernelBounds {
-  static constexpr int kMost = 7;
+  static constexpr int kMost = 8;
   FieldBound fields[kMost];  // those without a name are unused
   ChoiceBound choice{};
 };

@@ -14,6 +14,7 @@
 #include "kernels/light_point-inl.h"
 #include "kernels/reflection-inl.h"
 #include "kernels/rng-inl.h"
+#include "kernels/shading-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -84,6 +85,20 @@ HWY_INLINE VF Reflectance(const Plan& plan, VF ior, const SphereReflection& refl
   return hn::IfThenElse(mirror, one, of_glass);
 }
 
+// Not so: light paths bring what these get by way of a sphere.
+HWY_INLINE MF ByItself(const PathState& s, size_t i) {
+  return hn::RebindMask(DF(), hn::Eq(hn::Load(DU(), s.lamps + i), hn::Set(DU(), kByItself)));
+}
+
+// No connection.
+HWY_INLINE void Leave(const PathState& s, size_t i) {
+  const VF zero = hn::Zero(DF());
+  StoreVec3({zero, zero, zero}, s.l_x, s.l_y, s.l_z, i);
+  StoreVec3({zero, zero, zero}, s.m_x, s.m_y, s.m_z, i);
+  hn::Store(zero, DF(), s.l_pdf + i);
+  hn::Store(hn::Zero(DU()), DU(), s.via + i);
+}
+
 // Where on the sphere, and with what density.
 HWY_INLINE void Finish(const Plan& plan, const PathState& s, size_t i, const Aim& aim, VF tilt, VF light_area) {
   const DF d;
@@ -100,11 +115,14 @@ HWY_INLINE void Finish(const Plan& plan, const PathState& s, size_t i, const Aim
       hn::Mul(hn::Mul(light_area, Reflectance(plan, sphere.ior, reflection)), hn::Neg(Dot(reflection.to_y, aim.at.n)));
   const VF top = hn::Mul(hn::Mul(sphere.weight, reflection.spread), reflection.distance);
   const VF pdf = hn::Div(top, hn::Mul(hn::Mul(sphere.total, reflection.height), facing));
-  const MF usable = hn::And(reflection.exists, hn::Gt(facing, hn::Zero(d)));
-  StoreVec3(IfThenElseZero(usable, Sub(met, origin)), s.l_x, s.l_y, s.l_z, i);
+  const Vec3 l = Sub(met, origin);
+  MF wanted = ByItself(s, i);
+  if (has_light_paths(plan) && !plan.prim_normals.empty()) wanted = hn::Or(wanted, hn::Not(Agrees(s, i, l)));
+  const MF usable = hn::And(wanted, hn::And(reflection.exists, hn::Gt(facing, hn::Zero(d))));
+  StoreVec3(IfThenElseZero(usable, l), s.l_x, s.l_y, s.l_z, i);
   StoreVec3(IfThenElseZero(usable, Sub(aim.at.q, met)), s.m_x, s.m_y, s.m_z, i);
   hn::Store(hn::IfThenElseZero(usable, pdf), d, s.l_pdf + i);
-  hn::Store(hn::BitCast(DU(), hn::ConvertTo(DI(), sphere.via)), DU(), s.via + i);
+  hn::Store(hn::BitCast(DU(), hn::ConvertTo(DI(), hn::IfThenElseZero(usable, sphere.via))), DU(), s.via + i);
 }
 
 // In three loops over some vectors each: in one, a vector's divisions and square roots wait for each other, and what the
@@ -117,14 +135,21 @@ void ConnectSphere(const Plan& plan, const PathState& s, Range range) {
   alignas(64) std::byte room[kVectors * sizeof(Aim)];
   Aim* aims = reinterpret_cast<Aim*>(room);
   VF tilt[kVectors];
-  for (size_t i = range.begin; i < range.end; i += kVectors * lanes) {
-    const size_t n = std::min(kVectors, (range.end - i + lanes - 1) / lanes);
+  for (size_t i = range.begin; i < range.end;) {
+    size_t at[kVectors];
+    size_t n = 0;
+    for (; i < range.end && n < kVectors; i += lanes) {
+      if (plan.prim_normals.empty() && hn::AllFalse(DF(), ByItself(s, i))) {
+        Leave(s, i);
+      } else {
+        at[n++] = i;
+      }
+    }
     for (size_t k = 0; k < n; ++k) {
-      const size_t at = i + k * lanes;
-      new (&aims[k]) Aim(plan, light, DrawRandom(plan, s, at, set), LoadVec3(s.o_x, s.o_y, s.o_z, at));
+      new (&aims[k]) Aim(plan, light, DrawRandom(plan, s, at[k], set), LoadVec3(s.o_x, s.o_y, s.o_z, at[k]));
     }
     for (size_t k = 0; k < n; ++k) tilt[k] = HalfTilt(aims[k].between);
-    for (size_t k = 0; k < n; ++k) Finish(plan, s, i + k * lanes, aims[k], tilt[k], Splat(light.area));
+    for (size_t k = 0; k < n; ++k) Finish(plan, s, at[k], aims[k], tilt[k], Splat(light.area));
   }
 }
 

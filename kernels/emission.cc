@@ -8,6 +8,7 @@
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
 #include "kernels/records-inl.h"
+#include "kernels/shading-inl.h"
 #include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,7 +54,7 @@ void Emission(const Plan& plan, const PathState& s, Range range) {
       weight = hn::IfThenElseZero(alone, one);
     }
     weight = hn::IfThenElseZero(hn::Gt(cosine, zero), weight);
-    weight = hn::IfThenZeroElse(counted, weight);
+    weight = hn::IfThenZeroElse(hn::Or(counted, ByLightPaths(s, i)), weight);
 
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const Vec3 L = LoadVec3(s.L_r, s.L_g, s.L_b, i);

@@ -69,6 +69,7 @@ void Generate(const Plan& plan, const PathState& s, Range range) {
     StoreVec3({one, one, one}, s.beta_r, s.beta_g, s.beta_b, i);
     StoreVec3({zero, zero, zero}, s.L_r, s.L_g, s.L_b, i);
     hn::Store(zero, DF(), s.pdf + i);
+    hn::Store(hn::Set(DU(), kByItself), DU(), s.lamps + i);
   }
 }
 

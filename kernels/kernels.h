@@ -24,9 +24,10 @@ using Kernel = void(const Plan&, const PathState&, Range);
 // Starts camera paths: uniform in the pixel (a box filter of one pixel), from the eye or, with a thin lens, uniform on the
 // lens and through the point where the ray from the eye meets the plane in focus.
 void generate(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kGenerateFields = {.reads = "batch", .writes = "pixel sample slot o d beta L pdf"};
+constexpr KernelFields kGenerateFields = {.reads = "batch", .writes = "pixel sample slot o d beta L pdf lamps"};
 constexpr KernelBounds kGenerateBounds = {.fields = {exact("pixel"), exact("sample"), reach_ulps("o", 0.25),
-                                                     exact("beta"), exact("L"), exact("pdf"), ulps("d", 2.5)}};
+                                                     exact("beta"), exact("L"), exact("pdf"), exact("lamps"),
+                                                     ulps("d", 2.5)}};
 
 // Closest hit. Triangles are watertight (edge tests with exact signs after Woop, Benthin & Wald, JCGT 2013), spheres by the
 // stable quadratic of Haines et al., Ray Tracing Gems ch. 7. Of hits at the same t the lowest prim wins. A path with beta = 0
@@ -63,10 +64,48 @@ struct Bins {
 Bins sort_by_bin(const PathState& from, const PathState& to, Range range);
 constexpr KernelFields kSortFields = {.reads = "bin KEPT", .writes = "KEPT"};
 
+// Where there are light paths: who brings what lamps send next, as the paths are at a diffuse surface (step.diffuse) or another.
+void take_lamps(const Plan& plan, const PathState& s, Range range);
+// A direction d that does not agree with the normals of a surface leaves all to the path itself; where it leaves the surface
+// (step.leaving), that is all.
+constexpr KernelFields kTakeLampsFields = {.reads = "d n s lamps step", .writes = "lamps"};
+constexpr KernelBounds kTakeLampsBounds = {.fields = {exact("lamps")}, .choice = {.margin = 4, .max_share = 2e-4}};
+
+// Starts the light paths batch.first_path and following of lamp step.light: from a point of it, uniform by area, in a direction
+// uniform over the cones in which the plan's casters are seen from there; what lies in several counts by their number.
+void emit(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kEmitFields = {.reads = "batch step", .writes = "pixel sample slot o d beta L pdf lamps"};
+// The cosine at the lamp, which beta hangs on, is the difference of larger numbers at grazing angles. The choice is that of a cone,
+// and whether the direction lies in others.
+constexpr KernelBounds kEmitBounds = {
+    .fields = {exact("pixel"), exact("sample"), reach_ulps("o", 2), input_ulps("beta", 8, 2e-6), exact("L"),
+               exact("pdf"), exact("lamps"), ulps("d", 32)},
+    .choice = {.margin = 4, .max_share = 2e-3}};
+
+// Where shading normals s are not the surface's own n, what a light path carries is, over what a path from the camera would have by
+// the same surfaces, |d_in.n| |d_out.s| / (|d_in.s| |d_out.n|) too much (Veach 1997, eq. 5.19): multiplies beta by |d.s| / |d.n|,
+// or by the inverse when d leaves the vertex (step.leaving); by 0 where d does not agree with the normals.
+void adjoint(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kAdjointFields = {.reads = "d n s beta step", .writes = "beta"};
+constexpr KernelBounds kAdjointBounds = {.fields = {input_ulps("beta", 4)}, .choice = {.margin = 4, .max_share = 2e-4}};
+
+// Aims from light paths at diffuse surfaces at the camera, a point of its lens: c is the radiance that the pixel `raster` gets if
+// nothing is in the way, beta f |n.l| / (|l|^2 cos^3) over a pixel's area at distance 1, cos the angle with the view's axis; 0
+// outside of the window. L becomes 0.
+void connect_camera(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kConnectCameraFields = {.reads = "pixel sample prim o d n s err beta a step",
+                                               .writes = "l c L raster"};
+constexpr KernelBounds kConnectCameraBounds = {
+    .fields = {reach_ulps("l", 2.5), input_ulps("c", 8), exact("L"), exact("raster")},
+    .choice = {.margin = 4, .max_share = 2e-3}};
+
+// splat is no kernel but Splats::add: it sets aside what the camera sees, L at `raster`.
+constexpr KernelFields kSplatFields = {.reads = "L raster", .writes = ""};
+
 // Adds the radiance of the light that was hit from its front, weighted against light sampling by the power heuristic
-// (Veach 1997, eq. 9.13 with exponent 2). None where a connection has counted it: see kConnected.
+// (Veach 1997, eq. 9.13 with exponent 2). None where a connection has counted it, see kConnected, or light paths bring it.
 void emission(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kEmissionFields = {.reads = "prim t o d beta pdf L", .writes = "L"};
+constexpr KernelFields kEmissionFields = {.reads = "prim t o d beta pdf lamps L", .writes = "L"};
 // Hangs on the cosine at grazing angles; front or back is a choice.
 constexpr KernelBounds kEmissionBounds = {.fields = {input_ulps("L", 3)}, .choice = {.margin = 4, .max_share = 2e-4}};
 
@@ -123,9 +162,9 @@ constexpr KernelBounds kSampleHemisphereBounds = {.fields = {ulps("l", 3), exact
 
 // Samples light step.light by area, by way of one of the plan's connected spheres, and aims at where that reflects it
 // (kernels/reflection-inl.h); m goes on from there. l_pdf is the density of l, over the reflectance by Fresnel of glass; 0
-// where nothing is reflected.
+// where nothing is reflected, or light paths bring what is.
 void connect_sphere(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kConnectSphereFields = {.reads = "pixel sample o n err step", .writes = "l m l_pdf via"};
+constexpr KernelFields kConnectSphereFields = {.reads = "pixel sample o n s err lamps step", .writes = "l m l_pdf via"};
 // The density has no bound where light grazes; and near the sphere's horizon it goes with small heights over a tangent plane,
 // which come from larger numbers: so above 4 ulp.
 constexpr KernelBounds kConnectSphereBounds = {
@@ -136,6 +175,7 @@ constexpr KernelBounds kConnectSphereBounds = {
 // weight against the material's own density. The radiance is the light's, or the environment's from c; with -H it is not known
 // yet and left out. Of connections
 // the material's density is not weighed against, but says which are left to BSDF sampling (c = 0): see kMostConnectedPdf.
+// 0 also where light paths bring what the light sends by way of the surface: see core/plan_light_paths.h.
 // shade_<material>: samples the next direction, multiplies beta by f |cos| / pdf and moves the origin off the surface.
 void light_diffuse(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kLightDiffuseFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};
@@ -158,7 +198,7 @@ constexpr KernelFields kShadeTexturedFields = {.reads = "pixel sample o d n s er
 constexpr KernelBounds kShadeTexturedBounds = kShadeDiffuseBounds;
 // Torrance-Sparrow with Beckmann's D, Smith's separable G and conductor Fresnel per channel (Walter et al. 2007).
 void light_microfacet(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kLightMicrofacetFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};
+constexpr KernelFields kLightMicrofacetFields = {.reads = "prim d n s beta lamps l l_pdf c step", .writes = "c"};
 // Beckmann's exponent, tan^2 / alpha^2, hangs on the last bits of every direction when alpha is small, and those of the half
 // vector, rounded on the way, add to what moving the directions shows: so above 4 ulp. Where e^x is below float's range it
 // counts as 0.
@@ -176,7 +216,7 @@ constexpr KernelBounds kShadeMicrofacetBounds = {
 // reflectance, chosen among the visible ones (Walter et al. 2007; Heitz & d'Eon 2014). Takes light from both sides. Under -H, which
 // looks for lights on the viewer's side, pdf = 0 behind refraction.
 void light_rough_glass(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kLightRoughGlassFields = {.reads = "prim d s beta l l_pdf c step", .writes = "c"};
+constexpr KernelFields kLightRoughGlassFields = {.reads = "prim d n s beta lamps l l_pdf c step", .writes = "c"};
 // As for the metals, and near the critical angle and near an index of 1 the half vector is a small difference of two long ones.
 constexpr KernelBounds kLightRoughGlassBounds = {.fields = {input_ulps("c", 20, 1e-24)},
                                                  .choice = {.margin = 4, .max_share = 2e-4}};
@@ -193,7 +233,7 @@ constexpr KernelFields kShadeMirrorFields = {.reads = "prim o d n s err beta pdf
 constexpr KernelBounds kShadeMirrorBounds = {.fields = {exact("beta"), ulps("o", 0.9), ulps("d", 3), exact("pdf")},
                                              .choice = {.margin = 4, .max_share = 2e-4}};
 // Smooth dielectric: reflects or refracts by the Fresnel reflectance; refracted radiance scales with the squared ratio
-// of indices (Veach 1997, ch. 5); pdf = 0 (delta), or kConnected.
+// of indices (Veach 1997, ch. 5), the power of light paths does not; pdf = 0 (delta), or kConnected.
 void shade_glass(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kShadeGlassFields = {.reads = "pixel sample prim o d n s err beta pdf step",
                                             .writes = "o d beta pdf"};

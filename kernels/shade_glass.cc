@@ -38,8 +38,7 @@ void ShadeGlass(const Plan& plan, const PathState& s, Range range) {
     const Vec3 wi = Normalize(IfThenElse(reflects, reflected, refracted));
     const Vec3 o =
         OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), LoadVec3(s.n_x, s.n_y, s.n_z, i), hn::Load(df, s.err + i), wi);
-    // Radiance is squeezed into a narrower cone on the dense side.
-    const Vec3 through = Scale(hn::Mul(eta, eta), transmittance);
+    const Vec3 through = Scale(Squeeze(s.step, eta), transmittance);
     const Vec3 weight = IfThenElse(reflects, material.GetVec3(kReflectance), through);
     StoreVec3(Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), weight), s.beta_r, s.beta_g, s.beta_b, i);
     StoreVec3(o, s.o_x, s.o_y, s.o_z, i);

@@ -39,7 +39,11 @@ void LightMicrofacet(const Plan& plan, const PathState& s, Range range) {
     const Vec3 wi = Normalize(LoadVec3(s.l_x, s.l_y, s.l_z, i));
     const VF l_pdf = hn::Load(df, s.l_pdf + i);
     const VF cos_i = Dot(wi, normal), cos_o = hn::Max(hn::Neg(Dot(d, normal)), zero);
-    const MF lit = hn::And(hn::Gt(cos_i, zero), hn::Gt(l_pdf, zero));
+    const MF lit = hn::And(light.Wanted(plan, s, i, wi), hn::And(hn::Gt(cos_i, zero), hn::Gt(l_pdf, zero)));
+    if (hn::AllFalse(df, lit)) {
+      StoreVec3({zero, zero, zero}, s.c_r, s.c_g, s.c_b, i);
+      continue;
+    }
 
     const Metal metal(plan, s, i);
     const VF alpha = metal.alpha;

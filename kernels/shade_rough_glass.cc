@@ -36,10 +36,8 @@ struct RoughGlass {
     e = hn::Max(hn::Abs(hn::Mul(hn::Sub(n_t, n_i), hn::Add(n_t, n_i))), Splat(1e-6f));
   }
 
-  // Radiance is squeezed into a narrower cone on the dense side.
-  HWY_INLINE Vec3 Tint(MF reflects) const {
-    const VF eta = hn::Div(n_i, n_t);
-    return IfThenElse(reflects, reflectance, Scale(hn::Mul(eta, eta), transmittance));
+  HWY_INLINE Vec3 Tint(MF reflects, const Step& step) const {
+    return IfThenElse(reflects, reflectance, Scale(Squeeze(step, hn::Div(n_i, n_t)), transmittance));
   }
 
   // Density of the refracted direction for that of the visible normals over wo.m, c and cos_t the cosines of both directions
@@ -81,7 +79,8 @@ void LightRoughGlass(const Plan& plan, const PathState& s, Range range) {
         hn::Min(hn::IfThenElse(reflects, h.cos, hn::Div(hn::Mul(half, hn::Sub(q, difference)), glass.n_i)), one);
     const VF cos_t = hn::Min(hn::Div(hn::Mul(half, hn::Add(q, difference)), glass.n_t), one);
     const MF refracts = hn::And(hn::Gt(along, zero), hn::Lt(h.length2, glass.e));
-    const MF lit = hn::And(hn::Or(reflects, refracts), hn::Gt(l_pdf, zero));
+    const MF lit = hn::And(light.Wanted(plan, s, i, LoadVec3(s.l_x, s.l_y, s.l_z, i)),
+                           hn::And(hn::Or(reflects, refracts), hn::Gt(l_pdf, zero)));
 
     const Dielectric fresnel = FresnelDielectric(plan.settings.fresnel, hn::Max(c, zero), glass.n_i, glass.n_t);
     const SlopeView view_o = ViewSlopes(cos_o, hn::Sqrt(Dot(across_o, across_o)), glass.alpha);
@@ -90,7 +89,7 @@ void LightRoughGlass(const Plan& plan, const PathState& s, Range range) {
     const VF pdf = hn::IfThenElse(reflects, hn::Mul(fresnel.reflectance, hn::Mul(Splat(0.25f), visible)),
                                   hn::Mul(fresnel.transmittance, glass.RefractedPdf(visible, c, cos_t, q)));
     const VF weight = hn::Mul(hn::Mul(pdf, SmithG1(view_i)), light.Weight(l_pdf, pdf));
-    const Vec3 added = Scale(weight, Mul(glass.Tint(reflects), light.Radiance(s, i)));
+    const Vec3 added = Scale(weight, Mul(glass.Tint(reflects, s.step), light.Radiance(s, i)));
     StoreVec3(IfThenElseZero(lit, Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), added)), s.c_r, s.c_g, s.c_b, i);
   }
 }
@@ -139,7 +138,7 @@ void ShadeRoughGlass(const Plan& plan, const PathState& s, Range range) {
                            hn::Mul(fresnel.transmittance, glass.RefractedPdf(visible, c, fresnel.cos_t, q))));
 
     const Vec3 wi = Normalize(ToWorld(local, b1, b2, normal));
-    const Vec3 beta = Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), Scale(weight, glass.Tint(reflects)));
+    const Vec3 beta = Mul(LoadVec3(s.beta_r, s.beta_g, s.beta_b, i), Scale(weight, glass.Tint(reflects, s.step)));
     const Vec3 o =
         OffsetOrigin(LoadVec3(s.o_x, s.o_y, s.o_z, i), LoadVec3(s.n_x, s.n_y, s.n_z, i), hn::Load(df, s.err + i), wi);
     StoreVec3(IfThenElseZero(leaves, beta), s.beta_r, s.beta_g, s.beta_b, i);

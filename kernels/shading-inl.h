@@ -11,6 +11,7 @@
 
 #include "core/plan.h"
 #include "core/plan_connections.h"
+#include "core/plan_light_paths.h"
 #include "kernels/math-inl.h"
 #include "kernels/records-inl.h"
 #include "kernels/simd-inl.h"
@@ -37,9 +38,23 @@ struct LaneMaterials : LaneRecords {
   }
 };
 
+// Whether the direction w, of any length, agrees with both normals of the surface: see core/plan_light_paths.h.
+HWY_INLINE MF Agrees(const PathState& s, size_t i, const Vec3& w) {
+  const VF geometric = AbsDot(w, LoadVec3(s.n_x, s.n_y, s.n_z, i));
+  const VF shading = AbsDot(w, LoadVec3(s.s_x, s.s_y, s.s_z, i));
+  const VF least = Splat(kLeastAgreement);
+  return hn::And(hn::Ge(geometric, hn::Mul(least, shading)), hn::Ge(shading, hn::Mul(least, geometric)));
+}
+
+// Of which paths light paths bring what lamps send next.
+HWY_INLINE MF ByLightPaths(const PathState& s, size_t i) {
+  return hn::RebindMask(DF(), hn::Eq(hn::Load(DU(), s.lamps + i), hn::Set(DU(), kByLightPaths)));
+}
+
 // What is the same for every path of a light sample.
 struct LightTerms {
-  Vec3 radiance;    // of the light; with -H it is not known yet, and 1 stands for it
+  Vec3 radiance;  // of the light; with -H it is not known yet, and 1 stands for it
+  bool of_sky;
   bool from_paths;  // the environment's, which is each path's own
   VF samples;
   VF mis;       // 1: weigh against the material's own density, 0: do not
@@ -47,15 +62,23 @@ struct LightTerms {
 
   explicit LightTerms(const Plan& plan, const Step& step)
       : radiance{Splat(1.0f), Splat(1.0f), Splat(1.0f)},
+        of_sky(is_environment(plan, step.light)),
         from_paths(false),
         samples(Splat(static_cast<float>(plan.settings.light_samples))),
         mis(Splat(plan.settings.direct == Direct::kMis ? 1.0f : 0.0f)),
         most_pdf(Splat(std::numeric_limits<float>::infinity())) {
     if (plan.settings.direct != Direct::kHemisphere) {
-      from_paths = is_environment(plan, step.light);
+      from_paths = of_sky;
       if (!from_paths) radiance = SplatVec3(plan.lights[step.light].radiance);
     }
     if (step.connection) mis = hn::Zero(DF()), most_pdf = Splat(kMostConnectedPdf);
+  }
+
+  // Whether the path looks for this light, in direction l, itself.
+  HWY_INLINE MF Wanted(const Plan& plan, const PathState& s, size_t i, const Vec3& l) const {
+    if (of_sky || !has_light_paths(plan)) return hn::Eq(samples, samples);
+    const MF wanted = hn::Not(ByLightPaths(s, i));
+    return plan.prim_normals.empty() ? wanted : hn::Or(wanted, hn::Not(Agrees(s, i, l)));
   }
 
   HWY_INLINE Vec3 Radiance(const PathState& s, size_t i) const {
@@ -71,6 +94,10 @@ struct LightTerms {
     return hn::IfThenElseZero(hn::Le(bsdf_pdf, most_pdf), weight);
   }
 };
+
+// What refraction multiplies radiance by, eta the index on the side of its viewer over that beyond: on the dense side it is
+// squeezed into a narrower cone. The power that light paths carry is not.
+HWY_INLINE VF Squeeze(const Step& step, VF eta) { return step.from_light ? Splat(1.0f) : hn::Mul(eta, eta); }
 
 // What pdf becomes after a delta lobe: kConnected where it is the reflection, seen from outside, of a sphere by way of which
 // the vertex before has been connected to the lights, and else 0.

@@ -372,8 +372,8 @@ TEST_CASE("command line: stats.json adds up") {
   const auto& rays = stats["rays"];
   CHECK(rays["camera"] == stats["samples"]);
   CHECK(stats["plan"].size() > 2);
-  CHECK(rays["total"].get<uint64_t>() ==
-        rays["camera"].get<uint64_t>() + rays["bounce"].get<uint64_t>() + rays["shadow"].get<uint64_t>());
+  CHECK(rays["total"].get<uint64_t>() == rays["camera"].get<uint64_t>() + rays["light"].get<uint64_t>() +
+                                             rays["bounce"].get<uint64_t>() + rays["shadow"].get<uint64_t>());
   CHECK(rays["bounce"].get<uint64_t>() > 0);
   CHECK(rays["shadow"].get<uint64_t>() > 0);
   CHECK(stats["rays_per_second"].get<double>() > 0);

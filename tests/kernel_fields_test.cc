@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "core/path_buffer.h"
+#include "core/plan_light_paths.h"
 #include "core/stage_fields.h"
 #include "core/verify/kernel_case.h"
 #include "core/verify/plans.h"
+#include "core/verify/test_scene.h"
 
 namespace lanewise {
 namespace {
@@ -123,7 +125,8 @@ TEST_CASE("kernel fields: a kernel's bounds are of the fields that it writes") {
 
 TEST_CASE("kernel fields: kernels read and write what kernels.h lists, and all of it") {
   std::vector<Plan> plans = verify::verification_plans();
-  for (Plan& plan : plans) {  // so that no two materials are alike, and none reflects all
+  plans.push_back(make_plan(test::test_scene(), {}));  // connections and light paths, and corner normals
+  for (Plan& plan : plans) {                           // so that no two materials are alike, and none reflects all
     for (size_t i = 0; i < plan.materials.size(); ++i)
       plan.materials[i].reflectance[0] = 0.9f / static_cast<float>(i + 1);
   }
@@ -135,8 +138,13 @@ TEST_CASE("kernel fields: kernels read and write what kernels.h lists, and all o
       // Connections and the environment are not tried where there are none, nor are lights where the environment is sampled.
       const auto of = [&](const char* what) { return kernel_name.find(what) != std::string::npos; };
       const bool sky = !plan.environment.empty();
-      if ((of("connect") && (sky || plan.connected_spheres.empty())) || (of("environment") && !sky)) continue;
+      const bool connection = of("connect_sphere") || of("connection");
+      if ((connection && (sky || plan.connected_spheres.empty())) || (of("environment") && !sky)) continue;
       if (of("sample_light") && sky) continue;
+      if ((kernel_name == "take_lamps" || kernel_name == "emit" || kernel_name == "connect_camera") &&
+          (sky || !has_light_paths(plan))) {
+        continue;
+      }
       if (kernel_name == "texture" && plan.textures.empty()) continue;
       Trial trial(plan, kernel);
       const Words before = trial.words(), after = trial.run("");
@@ -153,7 +161,7 @@ TEST_CASE("kernel fields: kernels read and write what kernels.h lists, and all o
       CAPTURE(kernel_name);
       CAPTURE(name);
       // generate's batch is made from the paths' own pixels and samples, and it numbers them as the test does.
-      if (kernel_name == "generate" && is_in(name, "pixel sample slot")) continue;
+      if ((kernel_name == "generate" || kernel_name == "emit") && is_in(name, "pixel sample slot")) continue;
       CHECK((read.count(name) == 1) == is_in(name, listed.reads));
       CHECK((written.count(name) == 1) == is_in(name, listed.writes));
     }

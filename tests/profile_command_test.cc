@@ -104,7 +104,8 @@ TEST_CASE("profile command: the JSON adds up") {
   }
   const json& intersect = stage_of(report, "intersect");
   CHECK(intersect["bounces"].size() == 3 + 1);
-  CHECK(intersect["rays"] == report["rays"]["camera"].get<uint64_t>() + report["rays"]["bounce"].get<uint64_t>());
+  CHECK(intersect["rays"] == report["rays"]["camera"].get<uint64_t>() + report["rays"]["light"].get<uint64_t>() +
+                                 report["rays"]["bounce"].get<uint64_t>());
   const uint64_t straight = stage_of(report, "occlude")["rays"],
                  by_spheres = stage_of(report, "occlude_connection")["rays"];
   CHECK(straight + by_spheres == report["rays"]["shadow"]);

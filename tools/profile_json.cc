@@ -105,6 +105,7 @@ ProfileReport report_from(const Json& json) {
   r.plan = json.at("plan");
   r.samples = json.at("samples");
   r.camera_rays = json.at("rays").at("camera");
+  r.light_paths = json.at("rays").value("light", uint64_t{0});
   r.bounce_rays = json.at("rays").at("bounce");
   r.shadow_rays = json.at("rays").at("shadow");
   r.bounce_limit = json.at("bounce_limit");
@@ -130,33 +131,35 @@ ProfileReport report_from(const Json& json) {
 std::string profile_json(const ProfileReport& r) {
   const double seconds = median(r.seconds);
   const auto [low, middle, high] = r.overhead_by_turns();
-  Json json = {{"format", kFormat},
-               {"format_version", kFormatVersion},
-               {"command", r.command},
-               {"version", r.version},
-               {"scene", r.scene},
-               {"cpu", r.cpu},
-               {"isa", r.isa},
-               {"threads", r.threads},
-               {"settings", Json::object()},
-               {"plan", r.plan},
-               {"samples", r.samples},
-               {"rays", {{"camera", r.camera_rays}, {"bounce", r.bounce_rays}, {"shadow", r.shadow_rays}}},
-               {"bounce_limit", r.bounce_limit},
-               {"median_seconds", seconds},
-               {"rays_per_second", seconds > 0 ? static_cast<double>(r.rays()) / seconds : 0},
-               {"seconds", r.seconds},
-               {"seconds_unclocked", r.seconds_unclocked},
-               {"cpu_seconds", r.cpu_seconds},
-               {"cpu_seconds_unclocked", r.cpu_seconds_unclocked},
-               {"stage_seconds", r.stage_seconds()},
-               {"calm_waves", r.calm_waves},
-               {"between_stages", r.between_stages},
-               {"outside_waves", r.outside_waves},
-               {"clock_seconds", r.clock_seconds},
-               {"overhead", {{"by_count", r.overhead_by_count()}, {"by_turns", {low, middle, high}}}},
-               {"stages", Json::array()},
-               {"scaling", Json::array()}};
+  Json json = {
+      {"format", kFormat},
+      {"format_version", kFormatVersion},
+      {"command", r.command},
+      {"version", r.version},
+      {"scene", r.scene},
+      {"cpu", r.cpu},
+      {"isa", r.isa},
+      {"threads", r.threads},
+      {"settings", Json::object()},
+      {"plan", r.plan},
+      {"samples", r.samples},
+      {"rays",
+       {{"camera", r.camera_rays}, {"light", r.light_paths}, {"bounce", r.bounce_rays}, {"shadow", r.shadow_rays}}},
+      {"bounce_limit", r.bounce_limit},
+      {"median_seconds", seconds},
+      {"rays_per_second", seconds > 0 ? static_cast<double>(r.rays()) / seconds : 0},
+      {"seconds", r.seconds},
+      {"seconds_unclocked", r.seconds_unclocked},
+      {"cpu_seconds", r.cpu_seconds},
+      {"cpu_seconds_unclocked", r.cpu_seconds_unclocked},
+      {"stage_seconds", r.stage_seconds()},
+      {"calm_waves", r.calm_waves},
+      {"between_stages", r.between_stages},
+      {"outside_waves", r.outside_waves},
+      {"clock_seconds", r.clock_seconds},
+      {"overhead", {{"by_count", r.overhead_by_count()}, {"by_turns", {low, middle, high}}}},
+      {"stages", Json::array()},
+      {"scaling", Json::array()}};
   for (const auto& [flag, value] : r.settings) json["settings"][flag] = value;
   for (const StageReport& stage : r.stages) json["stages"].push_back(json_of(r, stage));
   for (const ScalingPoint& point : r.scaling) json["scaling"].push_back(json_of(r.scaling, point));

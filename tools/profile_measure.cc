@@ -177,6 +177,7 @@ ProfileReport measure(const Plan& plan, const MeasureOptions& options) {
   report.isa = chosen_isa();
   for (const Decision& d : explain(plan)) report.plan.push_back(one_line(d));
   report.samples = report.camera_rays = profiles[0].samples;
+  report.light_paths = profiles[0].light_paths;
   report.bounce_rays = profiles[0].bounce_rays;
   report.shadow_rays = profiles[0].shadow_rays;
   report.bounce_limit = kProfiledBounces;

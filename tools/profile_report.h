@@ -62,7 +62,7 @@ struct ProfileReport {
   std::vector<std::pair<std::string, std::string>> settings;  // flag and value, given or default
   std::vector<std::string> plan;                              // what it chose and why
 
-  uint64_t samples = 0, camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
+  uint64_t samples = 0, camera_rays = 0, light_paths = 0, bounce_rays = 0, shadow_rays = 0;
   uint32_t bounce_limit = 0;  // that bounces are told apart up to: the last stands for all that follow
 
   // Of each run, and of renders without the clock that took turns with them.
@@ -82,7 +82,7 @@ struct ProfileReport {
     return sum;
   }
   double share(double seconds_of_stage) const { return stage_seconds() > 0 ? seconds_of_stage / stage_seconds() : 0; }
-  uint64_t rays() const { return camera_rays + bounce_rays + shadow_rays; }
+  uint64_t rays() const { return camera_rays + light_paths + bounce_rays + shadow_rays; }
   size_t bounces() const {
     size_t most = 0;
     for (const StageReport& stage : stages) most = std::max(most, stage.bounces.size());

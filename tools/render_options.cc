@@ -98,6 +98,8 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
       {{"mis", Direct::kMis}, {"light", Direct::kLight}, {"bsdf", Direct::kBsdf}, {"hemisphere", Direct::kHemisphere}},
       "How direct light is sampled");
   app.add_flag("-H,--hemisphere", o.hemisphere, "Short for --direct hemisphere");
+  add_choice<bool>(app, "--light-paths", o.settings.light_paths, {{"on", true}, {"off", false}},
+                   "Caustics and their glow by paths from the lamps");
   add_choice<bool>(app, "--connect", o.settings.connect, {{"on", true}, {"off", false}},
                    "Samples of lights by way of mirror and glass spheres, where the plan has few");
   add_choice<BsdfSampling>(

@@ -12,7 +12,7 @@
 namespace lanewise {
 namespace {
 
-uint64_t total_rays(const RenderStats& s) { return s.camera_rays + s.bounce_rays + s.shadow_rays; }
+uint64_t total_rays(const RenderStats& s) { return s.camera_rays + s.light_paths + s.bounce_rays + s.shadow_rays; }
 
 double rays_per_second(const RenderReport& r) {
   return r.seconds.render > 0 ? static_cast<double>(total_rays(r.stats)) / r.seconds.render : 0;
@@ -60,7 +60,11 @@ std::string stats_json(const RenderReport& r) {
        {{"load", r.seconds.load}, {"plan", r.seconds.plan}, {"render", r.seconds.render}, {"write", r.seconds.write}}},
       {"samples", s.samples},
       {"rays",
-       {{"camera", s.camera_rays}, {"bounce", s.bounce_rays}, {"shadow", s.shadow_rays}, {"total", total_rays(s)}}},
+       {{"camera", s.camera_rays},
+        {"light", s.light_paths},
+        {"bounce", s.bounce_rays},
+        {"shadow", s.shadow_rays},
+        {"total", total_rays(s)}}},
       {"rays_per_second", rays_per_second(r)},
       {"peak_rss_bytes", peak_rss_bytes()},
       {"invalid_samples", s.invalid_samples},

@@ -141,6 +141,12 @@ void fill_camera_path(const Plan& plan, Rng& rng, Path<float>& p) {
   p.sample = sample;
 }
 
+void fill_light_path(const Plan& plan, Rng& rng, Path<float>& p) {
+  start(plan, rng, p);
+  p.pixel = light_path_pixel(kFirstLightPath + p.slot);
+  p.sample = light_path_sample(kFirstLightPath + p.slot);
+}
+
 void fill_ray(const Plan& plan, Rng& rng, Path<float>& p) {
   start(plan, rng, p);
   const dvec3 o = rng() % 4 == 0 ? reference::vec3<double>(plan.camera.eye) : point_in(rng);

@@ -9,9 +9,12 @@
 
 namespace lanewise::verify {
 
+constexpr uint64_t kFirstLightPath = 5'000'000'000;
+
 void fill_camera_path(const Plan& plan, std::mt19937& rng, Path<float>& p);
-void fill_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before intersect
-void fill_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before surface
+void fill_light_path(const Plan& plan, std::mt19937& rng, Path<float>& p);  // before emit
+void fill_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);         // before intersect
+void fill_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);         // before surface
 void fill_emitter_hit(const Plan& plan, std::mt19937& rng, Path<float>& p);
 void fill_sky_ray(const Plan& plan, std::mt19937& rng, Path<float>& p);        // before environment
 void fill_shading_point(const Plan& plan, std::mt19937& rng, Path<float>& p);  // after surface, of any material

@@ -4,9 +4,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/plan_light_paths.h"
 #include "core/verify/fills.h"
+#include "kernels/reference/adjoint.h"
+#include "kernels/reference/connect_camera.h"
 #include "kernels/reference/connect_sphere.h"
 #include "kernels/reference/emission.h"
+#include "kernels/reference/emit.h"
 #include "kernels/reference/environment.h"
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
@@ -22,6 +26,7 @@
 #include "kernels/reference/shade_mirror.h"
 #include "kernels/reference/shade_rough_glass.h"
 #include "kernels/reference/surface.h"
+#include "kernels/reference/take_lamps.h"
 #include "kernels/reference/texture.h"
 
 namespace lanewise::verify {
@@ -35,9 +40,17 @@ void generate_batch(const Plan& plan, const PathState& s, Range range) {
   generate(plan, with_batch, range);
 }
 
+// The paths are numbered as they lie.
+void emit_batch(const Plan& plan, const PathState& s, Range range) {
+  PathState with_batch = s;
+  with_batch.batch = {.first_path = kFirstLightPath, .paths = range.end};
+  emit(plan, with_batch, range);
+}
+
 // What kernels need that not every plan and step has.
 bool is_light(const Plan& plan, const Step& step) { return !is_environment(plan, step.light); }
 bool connected(const Plan& plan, const Step& step) { return connects(plan) && is_light(plan, step); }
+bool lit(const Plan& plan, const Step& step) { return has_light_paths(plan) && is_light(plan, step); }
 bool has_sky(const Plan& plan, const Step&) { return !plan.environment.empty(); }
 bool has_textures(const Plan& plan, const Step&) { return !plan.textures.empty(); }
 
@@ -102,6 +115,12 @@ const KernelCase kCases[] = {
      kOccludeConnectionBounds, "o n l m", fill_connection},
     {"gather_emission", gather_emission, twin::gather_emission<double>, kGatherEmissionBounds, "o n l",
      fill_shadow_ray},
+    {"take_lamps", run_if<lit, take_lamps>, twin_if<lit, twin::take_lamps<double>>, kTakeLampsBounds, "d n s",
+     fill_shading_point},
+    {"emit", run_if<lit, emit_batch>, twin_if<lit, twin::emit<double>>, kEmitBounds, "", fill_light_path},
+    {"adjoint", adjoint, twin::adjoint<double>, kAdjointBounds, "d n s", fill_shading_point},
+    {"connect_camera", run_if<lit, connect_camera>, twin_if<lit, twin::connect_camera<double>>, kConnectCameraBounds,
+     "o d n s", fill_of_bin<kDiffuse, kShade>},
     {"roulette", roulette, twin::roulette<double>, kRouletteBounds, "beta", fill_throughput},
 };
 

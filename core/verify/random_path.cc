@@ -28,6 +28,7 @@ void fill_random(const Plan& plan, std::mt19937& rng, Path<float>& p, uint32_t i
   LANEWISE_SET_RGB(p, beta, glm::vec3(unit(rng), unit(rng), unit(rng)) + 0.01f);
   LANEWISE_SET_RGB(p, L, glm::vec3(unit(rng), unit(rng), unit(rng)));
   p.pdf = rng() % 4 == 0 ? 0.0f : 0.01f + 2 * unit(rng);
+  p.lamps = p.sample % 3;
   p.prim = static_cast<uint32_t>(rng() % (plan.triangles + plan.spheres));
   p.t = 0.01f + 3 * unit(rng);
   p.u = unit(rng);

@@ -5,6 +5,7 @@
 #include "kernels/reference/fresnel.h"
 #include "kernels/reference/light_point.h"
 #include "kernels/reference/reflection.h"
+#include "kernels/reference/shading.h"
 
 namespace lanewise::reference {
 
@@ -43,10 +44,13 @@ void connect_sphere(const Plan& plan, Path<T>& p) {
   if (sphere.ior > 0) {
     facing *= fresnel_dielectric(plan.settings.fresnel, reflection.cosine, T(1), T(sphere.ior)).reflectance;
   }
-  const bool usable = reflection.exists && facing > 0;
+  const bool wanted = p.lamps == kByItself || disagrees(plan, p, met - origin);
+  const bool usable = wanted && reflection.exists && facing > 0;
   LANEWISE_SET_VEC3(p, l, usable ? met - origin : Vec3<T>(0));
   LANEWISE_SET_VEC3(p, m, usable ? at.q - met : Vec3<T>(0));
-  p.l_pdf = usable ? chances[p.via] * reflection.spread / facing : T(0);
+  const T chance = chances[p.via];
+  if (!usable) p.via = 0;
+  p.l_pdf = usable ? chance * reflection.spread / facing : T(0);
 }
 
 }  // namespace lanewise::reference

@@ -12,7 +12,7 @@ void emission(const Plan& plan, Path<T>& p) {
   Vec3<T> n = vec3<T>(shape);
   if (p.prim >= plan.triangles) n = glm::normalize(LANEWISE_VEC3(p, o) + p.t * d - n);
   const T cosine = -glm::dot(n, d);
-  if (!(cosine > 0) || p.pdf == T(kConnected)) return;
+  if (!(cosine > 0) || p.pdf == T(kConnected) || p.lamps == kByLightPaths) return;
 
   const PlanLight& light = plan.lights[plan.prim_light[p.prim]];
   const bool alone = p.pdf == 0;

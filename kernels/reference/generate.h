@@ -31,6 +31,7 @@ void generate(const Plan& plan, Path<T>& p) {
   LANEWISE_SET_RGB(p, beta, Vec3<T>(1));
   LANEWISE_SET_RGB(p, L, Vec3<T>(0));
   p.pdf = 0;
+  p.lamps = kByItself;
 }
 
 }  // namespace lanewise::reference

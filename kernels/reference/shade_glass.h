@@ -19,8 +19,8 @@ void shade_glass(const Plan& plan, Path<T>& p) {
   if (draw_random(plan, p, kSetChoice).u[kDrawLobe] < fresnel.reflectance) {
     leave(p, glm::normalize(d + 2 * c * normal), vec3<T>(material.reflectance), pdf_after_delta(plan, p, !inside));
   } else {
-    leave(p, glm::normalize(eta * d + (eta * c - fresnel.cos_t) * normal), eta * eta * vec3<T>(material.transmittance),
-          pdf_after_delta(plan, p, false));
+    leave(p, glm::normalize(eta * d + (eta * c - fresnel.cos_t) * normal),
+          squeeze(p.step, eta) * vec3<T>(material.transmittance), pdf_after_delta(plan, p, false));
   }
 }
 

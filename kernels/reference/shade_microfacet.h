@@ -74,7 +74,7 @@ void light_microfacet(const Plan& plan, Path<T>& p) {
   Vec3<T> wo = local(-d);
   wo.z = std::max(wo.z, T(0));
   const Vec3<T> wi = local(l);
-  if (wi.z > 0 && p.l_pdf > 0) {
+  if (wi.z > 0 && p.l_pdf > 0 && looks_for_light(plan, p, l)) {
     const auto pair = evaluate_microfacet(plan.settings, wo, wi, alpha_of<T>(material));
     c = LANEWISE_RGB(p, beta) * fresnel_conductor(plan, material, pair.cos_h) * pair.f_cos *
         light_weight(plan, p, pair.pdf);

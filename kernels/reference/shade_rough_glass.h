@@ -62,9 +62,9 @@ RoughGlassPair<T> evaluate_rough_glass(Fresnel model, const RoughGlass<T>& glass
 }
 
 template <class T>
-Vec3<T> rough_glass_tint(const PlanMaterial& material, const RoughGlass<T>& glass, bool reflects) {
+Vec3<T> rough_glass_tint(const PlanMaterial& material, const RoughGlass<T>& glass, bool reflects, const Step& step) {
   const T eta = glass.n_i / glass.n_t;
-  return reflects ? vec3<T>(material.reflectance) : eta * eta * vec3<T>(material.transmittance);
+  return reflects ? vec3<T>(material.reflectance) : squeeze(step, eta) * vec3<T>(material.transmittance);
 }
 
 template <class T>
@@ -79,10 +79,10 @@ void light_rough_glass(const Plan& plan, Path<T>& p) {
   Vec3<T> wo = local(-d);
   wo.z = std::max(wo.z, T(0));
   const Vec3<T> wi = local(l);
-  if (p.l_pdf > 0) {
+  if (p.l_pdf > 0 && looks_for_light(plan, p, l)) {
     const auto pair = evaluate_rough_glass(plan.settings.fresnel, glass, wo, wi);
     if (pair.pdf > 0) {
-      c = LANEWISE_RGB(p, beta) * rough_glass_tint(material, glass, wi.z > 0) * pair.f_cos *
+      c = LANEWISE_RGB(p, beta) * rough_glass_tint(material, glass, wi.z > 0, p.step) * pair.f_cos *
           light_weight(plan, p, pair.pdf);
     }
   }
@@ -117,7 +117,7 @@ void shade_rough_glass(const Plan& plan, Path<T>& p) {
                 : alone  ? T(0)
                          : glass.refracted_pdf(model, wo, tan2, c, fresnel.cos_t);
   leave(p, glm::normalize(to_world(wi, b1, b2, normal)),
-        leaves ? weight * rough_glass_tint(material, glass, reflects) : Vec3<T>(0), leaves ? pdf : T(0));
+        leaves ? weight * rough_glass_tint(material, glass, reflects, p.step) : Vec3<T>(0), leaves ? pdf : T(0));
 }
 
 }  // namespace lanewise::reference

@@ -3,6 +3,7 @@
 
 #include "core/plan.h"
 #include "core/plan_connections.h"
+#include "core/plan_light_paths.h"
 #include "kernels/reference/vec3.h"
 
 namespace lanewise::reference {
@@ -36,6 +37,32 @@ template <class T>
 T pdf_after_delta(const Plan& plan, const Path<T>& p, bool reflects_outside) {
   const bool counted = connects(plan) && p.pdf > 0 && p.pdf <= T(kMostConnectedPdf);
   return counted && reflects_outside && p.prim >= plan.triangles ? T(kConnected) : T(0);
+}
+
+// Whether the direction agrees with both normals of the surface: see core/plan_light_paths.h.
+template <class T>
+bool agrees(const Path<T>& p, const Vec3<T>& w) {
+  const T geometric = std::abs(glm::dot(w, LANEWISE_VEC3(p, n))), shading = std::abs(glm::dot(w, LANEWISE_VEC3(p, s)));
+  return geometric >= T(kLeastAgreement) * shading && shading >= T(kLeastAgreement) * geometric;
+}
+
+// Whether light paths are not for ways in this direction, that of a light sample.
+template <class T>
+bool disagrees(const Plan& plan, const Path<T>& p, const Vec3<T>& l) {
+  return has_light_paths(plan) && !plan.prim_normals.empty() && !agrees(p, l);
+}
+
+// Whether the path looks for light step.light, in direction l, itself, or light paths bring what it sends.
+template <class T>
+bool looks_for_light(const Plan& plan, const Path<T>& p, const Vec3<T>& l) {
+  return is_environment(plan, p.step.light) || !has_light_paths(plan) || p.lamps != kByLightPaths ||
+         disagrees(plan, p, l);
+}
+
+// What refraction multiplies radiance by, eta the index on the side of its viewer over that beyond.
+template <class T>
+T squeeze(const Step& step, T eta) {
+  return step.from_light ? T(1) : eta * eta;
 }
 
 // Sends the path on from the hit point in direction wi.

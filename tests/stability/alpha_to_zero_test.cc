@@ -54,7 +54,8 @@ Image picture(const Material& ball) {
   scene.materials[test::kMirrorMaterial] = ball;
   Settings settings;
   settings.width = 64, settings.height = 48, settings.threads = 1;
-  settings.connect = false;  // of a mirror alone, whose picture would no longer be of the same paths
+  settings.connect = false;      // of a mirror alone, whose picture would no longer be of the same paths
+  settings.light_paths = false;  // by rounding, some would fall into other pixels
   return render(make_plan(scene, settings)).image;
 }
 

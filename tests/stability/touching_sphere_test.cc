@@ -36,6 +36,7 @@ Settings small(uint32_t max_depth) {
   Settings settings;
   settings.width = 20, settings.height = 15, settings.spp = 64, settings.threads = 1;
   settings.max_depth = max_depth;
+  settings.light_paths = false;  // which would not start where the sphere touches
   return settings;
 }
 

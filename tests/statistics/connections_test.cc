@@ -41,6 +41,7 @@ Scene lamp_under_ball(uint32_t ball, uint32_t floor) {
 Plan plan_of(const Scene& scene, uint32_t depth) {
   Settings settings;
   settings.width = 48, settings.height = 36, settings.spp = kSpp, settings.threads = 1, settings.max_depth = depth;
+  settings.light_paths = false;  // which would leave connections no light
   return make_plan(scene, settings);
 }
 

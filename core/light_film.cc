@@ -1,0 +1,50 @@
+#include "core/light_film.h"
+
+#include <algorithm>
+
+namespace lanewise {
+
+LightFilm::LightFilm(size_t pixels) : film_(pixels) { std::ranges::fill(film_.sums, PixelSums{}); }
+
+// In the order of the bands, so that each lock is taken once.
+void LightFilm::add(const std::vector<Splat>& splats) {
+  const size_t band = (film_.sums.size() + kBands - 1) / kBands;
+  std::array<size_t, kBands + 1> begin{};
+  for (const Splat& splat : splats) ++begin[splat.pixel / band + 1];
+  for (size_t k = 0; k < kBands; ++k) begin[k + 1] += begin[k];
+  std::vector<Splat> sorted(splats.size());
+  std::array<size_t, kBands + 1> next = begin;
+  for (const Splat& splat : splats) sorted[next[splat.pixel / band]++] = splat;
+  for (size_t k = 0; k < kBands; ++k) {
+    const std::lock_guard lock(locks_[k]);
+    for (size_t i = begin[k]; i < begin[k + 1]; ++i) {
+      film_.sums[sorted[i].pixel].add(sorted[i].r, sorted[i].g, sorted[i].b);
+    }
+  }
+}
+
+void LightFilm::drew(uint64_t passes) {
+  for (uint64_t& samples : film_.samples) samples += passes;
+}
+
+PixelMean light_mean(const PixelSums& sums, uint64_t passes) {
+  if (passes == 0) return {};
+  const double scale = 1 / static_cast<double>(passes);
+  return {{static_cast<float>(sums.r.as<double>() * scale), static_cast<float>(sums.g.as<double>() * scale),
+           static_cast<float>(sums.b.as<double>() * scale)},
+          static_cast<float>(sums.y2.as<double>() * scale * scale)};
+}
+
+MeanPicture light_picture(const Film& light, uint32_t width, const Window& window) {
+  MeanPicture picture{window.width, window.height, {}};
+  picture.pixels.reserve(size_t{window.width} * window.height);
+  for (uint32_t y = window.y; y < window.y + window.height; ++y) {
+    for (uint32_t x = window.x; x < window.x + window.width; ++x) {
+      const size_t i = size_t{y} * width + x;
+      picture.pixels.push_back(light_mean(light.sums[i], light.samples[i]));
+    }
+  }
+  return picture;
+}
+
+}  // namespace lanewise

@@ -1,0 +1,41 @@
+// The film of light paths, which fall on any pixel from any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "core/film.h"
+#include "core/splats.h"
+
+namespace lanewise {
+
+class LightFilm {
+ public:
+  explicit LightFilm(size_t pixels);
+
+  // From any thread.
+  void add(const std::vector<Splat>& splats);
+
+  // So many passes more are done.
+  void drew(uint64_t passes);
+  uint64_t passes() const { return film_.samples[0]; }
+
+  // Of every pixel its sum over what it has seen, and as the number of its samples that of the passes.
+  const Film& film() const { return film_; }
+  Film& film() { return film_; }
+
+ private:
+  static constexpr size_t kBands = 64;  // of pixels, with a lock each
+
+  Film film_;
+  std::array<std::mutex, kBands> locks_;
+};
+
+// What light paths add to a pixel, from its sums in a LightFilm. The variance is that of a Poisson process: a pixel sees some of
+// very many independent paths.
+PixelMean light_mean(const PixelSums& sums, uint64_t passes);
+MeanPicture light_picture(const Film& light, uint32_t width, const Window& window);
+
+}  // namespace lanewise

@@ -1,0 +1,175 @@
+#include "core/plan_light_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+#include <string_view>
+
+#include "core/pixel_sums.h"
+#include "kernels/reference/intersect.h"
+
+namespace lanewise {
+namespace {
+
+using glm::dvec3;
+
+dvec3 to_dvec3(const float* v) { return {v[0], v[1], v[2]}; }
+
+bool casts(uint32_t bin) { return bin > kDiffuse && bin < kSurfaceBins; }
+
+// Around all corners, about the centre of their box; a little wider than that, as floats are.
+class Hull {
+ public:
+  void add(const dvec3& low, const dvec3& high) { low_ = glm::min(low_, low), high_ = glm::max(high_, high); }
+  dvec3 center() const { return (low_ + high_) / 2.0; }
+  Caster around(double radius) const {
+    Caster caster;
+    for (int k = 0; k < 3; ++k) caster.center[k] = static_cast<float>(center()[k]);
+    caster.radius = static_cast<float>(radius * (1 + 1e-5));
+    return caster;
+  }
+
+ private:
+  dvec3 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
+};
+
+Caster caster_around(std::span<const FlatTriangle> triangles) {
+  Hull hull;
+  for (const FlatTriangle& t : triangles) {
+    for (const auto& v : t.v) hull.add(to_dvec3(v), to_dvec3(v));
+  }
+  double radius = 0;
+  for (const FlatTriangle& t : triangles) {
+    for (const auto& v : t.v) radius = std::max(radius, glm::distance(hull.center(), to_dvec3(v)));
+  }
+  return hull.around(radius);
+}
+
+Caster caster_around(const std::vector<Caster>& casters) {
+  Hull hull;
+  for (const Caster& c : casters) {
+    hull.add(to_dvec3(c.center) - double{c.radius}, to_dvec3(c.center) + double{c.radius});
+  }
+  double radius = 0;
+  for (const Caster& c : casters) {
+    radius = std::max(radius, glm::distance(hull.center(), to_dvec3(c.center)) + c.radius);
+  }
+  return hull.around(radius);
+}
+
+// A point of the lamp, about in its middle.
+dvec3 middle(const Plan& plan, const PlanLight& light) {
+  if (light.patches == 0) return to_dvec3(light.center);
+  const LightPatch& patch = plan.light_patches[light.first_patch];
+  return to_dvec3(patch.corner) + (to_dvec3(patch.e1) + to_dvec3(patch.e2)) / (patch.is_triangle != 0 ? 3.0 : 2.0);
+}
+
+double solid_angle(const Caster& caster, const dvec3& from) {
+  const double distance2 = std::pow(glm::distance(to_dvec3(caster.center), from), 2);
+  const double sine2 = double{caster.radius} * caster.radius / distance2;
+  return 2 * std::numbers::pi * (sine2 < 1 ? sine2 / (1 + std::sqrt(1 - sine2)) : 2);
+}
+
+bool in_use(const Plan& plan, uint32_t bin) {
+  return std::ranges::any_of(plan.prim_bin, [&](uint32_t b) { return b == bin; });
+}
+
+// Of the area of a box around the scene, about how much of diffuse surfaces the picture shows, by some rays.
+float share_shown(const Plan& plan, const dvec3& size) {
+  constexpr uint32_t kRays = 12;  // each way
+  const dvec3 eye = to_dvec3(plan.camera.eye), forward = to_dvec3(plan.camera.forward);
+  const dvec3 right = to_dvec3(plan.camera.right), up = to_dvec3(plan.camera.up);
+  const double width = plan.settings.width, height = plan.settings.height, pixel = plan.camera.pixel;
+  double shown = 0;
+  for (uint32_t k = 0; k < kRays * kRays; ++k) {
+    const double x = ((k % kRays + 0.5) / kRays - 0.5) * width, y = ((k / kRays + 0.5) / kRays - 0.5) * height;
+    const dvec3 d = glm::normalize(forward + pixel * (x * right + y * up));
+    const auto hit = reference::closest_hit(plan, eye, d);
+    if (!std::isfinite(hit.t) || plan.prim_bin[hit.prim] != kDiffuse) continue;
+    const float* shape = &plan.prim_shape[4 * size_t{hit.prim}];
+    const dvec3 n = hit.prim < plan.triangles ? to_dvec3(shape) : glm::normalize(eye + hit.t * d - to_dvec3(shape));
+    const double cosine = glm::dot(d, forward), side = pixel * hit.t * cosine;
+    shown += side * side * cosine / std::max(0.05, std::abs(glm::dot(d, n)));
+  }
+  const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+  return static_cast<float>(shown * width * height / (kRays * kRays) / area);
+}
+
+}  // namespace
+
+const char* why_no_light_paths(const Plan& plan) {
+  const Settings& settings = plan.settings;
+  if (!settings.light_paths) return "--light-paths off";
+  if (settings.direct != Direct::kMis) return "only with --direct mis";
+  if (settings.adaptive_batch > 0 || settings.noise > 0) return "-a and --noise stop pixels one by one";
+  if (settings.course.any() || settings.fresnel == Fresnel::kCourse)
+    return "the course program's formulas are not reciprocal";
+  if (settings.max_depth < 2 || (settings.only_bounce && *settings.only_bounce < 2))
+    return "no path of two scattering events";
+  if (plan.lights.empty()) return "no lamp";
+  if (!in_use(plan, kDiffuse)) return "no diffuse surface";
+  if (std::ranges::none_of(plan.prim_bin, casts)) return "only diffuse surfaces";
+  if (plan.shown < kLeastShown) return "the picture shows too little of diffuse surfaces";
+  return "";
+}
+
+void choose_light_paths(Plan& plan, std::span<const FlatTriangle> triangles, std::span<const FlatSphere> spheres) {
+  if (!std::string_view(why_no_light_paths(plan)).empty()) return;
+  for (const PlanGroup& group : plan.groups) {
+    if (group.first >= plan.triangles || group.size == 0 || !casts(plan.prim_bin[group.first])) continue;
+    plan.casters.push_back(caster_around(triangles.subspan(group.first, group.size)));
+  }
+  for (const FlatSphere& sphere : spheres) {
+    if (!casts(plan.prim_bin[sphere.prim])) continue;
+    Caster caster;
+    std::copy_n(sphere.center, 3, caster.center);
+    caster.radius = sphere.radius * 1.00001f;
+    plan.casters.push_back(caster);
+  }
+  if (plan.casters.size() > kMaxCasters) plan.casters = {caster_around(plan.casters)};
+
+  std::vector<double> powers;
+  double power = 0;
+  for (const PlanLight& light : plan.lights) {
+    double angle = 0;
+    for (const Caster& caster : plan.casters) angle += solid_angle(caster, middle(plan, light));
+    powers.push_back(luminance(light.radiance[0], light.radiance[1], light.radiance[2]) * light.area * angle);
+    power += powers.back();
+  }
+  const double all = std::ceil(static_cast<double>(plan.settings.width) * plan.settings.height / kPixelsPerLightPath);
+  for (size_t i = 0; i < plan.lights.size(); ++i) {
+    const PlanLight& light = plan.lights[i];
+    const float brightest = std::max({light.radiance[0], light.radiance[1], light.radiance[2]});
+    double angle = 0;
+    for (const Caster& caster : plan.casters) angle += solid_angle(caster, middle(plan, light));
+    LampPaths paths;
+    paths.per_pass = static_cast<uint32_t>(std::max(1.0, std::round(all * powers[i] / power)));
+    paths.throughput = static_cast<float>(1 / angle);
+    paths.scale = static_cast<float>(double{brightest} * light.area * angle / paths.per_pass);
+    plan.lamp_paths.push_back(paths);
+  }
+}
+
+void drop_unseen_light_paths(Plan& plan, const dvec3& size) {
+  if (!has_light_paths(plan)) return;
+  plan.shown = share_shown(plan, size);
+  if (plan.shown >= kLeastShown) return;
+  plan.casters.clear();
+  plan.lamp_paths.clear();
+}
+
+std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint64_t passes) {
+  constexpr uint64_t kPiece = 1 << 15;
+  std::vector<LightPiece> pieces;
+  for (uint32_t light = 0; light < plan.lamp_paths.size(); ++light) {
+    const uint64_t per_pass = plan.lamp_paths[light].per_pass, end = (first_pass + passes) * per_pass;
+    for (uint64_t first = first_pass * per_pass; first < end; first += kPiece) {
+      pieces.push_back({light, first, static_cast<uint32_t>(std::min(kPiece, end - first))});
+    }
+  }
+  return pieces;
+}
+
+}  // namespace lanewise
