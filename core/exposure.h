@@ -23,10 +23,9 @@ using Draw = std::function<uint64_t(const std::vector<uint32_t>& pixels, uint64_
 class LightPathDraw {
  public:
   virtual ~LightPathDraw() = default;
-  // How many threads may draw at a time.
-  virtual uint32_t workers() const = 0;
-  // Passes first .. first + passes - 1 in pieces.
-  virtual std::vector<LightPiece> pieces(uint64_t first, uint64_t passes) const = 0;
+  // Passes first .. first + passes - 1 in pieces for so many workers, and how many to draw at a time.
+  virtual std::vector<LightPiece> pieces(uint64_t first, uint64_t passes, uint32_t workers) const = 0;
+  virtual uint64_t passes_at_a_time(uint32_t workers) const = 0;
   // Adds what the camera sees of a piece, on the thread that is called `worker`; returns how many rays that took.
   virtual uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/packed_sums.h"
+
 namespace lanewise {
 
 LightFilm::LightFilm(size_t pixels) : film_(pixels) { std::ranges::fill(film_.sums, PixelSums{}); }
@@ -21,6 +23,34 @@ void LightFilm::add(const std::vector<Splat>& splats) {
       film_.sums[sorted[i].pixel].add(sorted[i].r, sorted[i].g, sorted[i].b);
     }
   }
+}
+
+void LightFilm::add(ByteReader& packed) {
+  const size_t band = (film_.sums.size() + kBands - 1) / kBands;
+  std::unique_lock<std::mutex> lock;
+  for (size_t last = kBands; !packed.empty();) {
+    const auto pixel = packed.get<uint32_t>();
+    const size_t k = pixel / band;
+    if (k != last) {
+      if (lock) lock.unlock();
+      lock = std::unique_lock(locks_.at(k));
+      last = k;
+    }
+    film_.sums[pixel] += unpack_sums(packed);
+  }
+}
+
+std::string pack_splats(std::vector<Splat>& splats) {
+  std::ranges::sort(splats, {}, &Splat::pixel);
+  std::string packed;
+  for (auto next = splats.begin(); next != splats.end();) {
+    const uint32_t pixel = next->pixel;
+    PixelSums sums;
+    for (; next != splats.end() && next->pixel == pixel; ++next) sums.add(next->r, next->g, next->b);
+    packed.append(reinterpret_cast<const char*>(&pixel), sizeof pixel);
+    pack(sums, packed);
+  }
+  return packed;
 }
 
 void LightFilm::drew(uint64_t passes) {

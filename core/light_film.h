@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <mutex>
+#include <string>
 #include <vector>
 
+#include "core/bytes.h"
 #include "core/film.h"
 #include "core/splats.h"
 
@@ -17,6 +19,9 @@ class LightFilm {
 
   // From any thread.
   void add(const std::vector<Splat>& splats);
+
+  // What pack_splats() has made of some; from any thread.
+  void add(ByteReader& packed);
 
   // So many passes more are done.
   void drew(uint64_t passes);
@@ -32,6 +37,9 @@ class LightFilm {
   Film film_;
   std::array<std::mutex, kBands> locks_;
 };
+
+// Each pixel that they fall on, in rising order, with its sums packed: for another process. Sorts the list.
+std::string pack_splats(std::vector<Splat>& splats);
 
 // What light paths add to a pixel, from its sums in a LightFilm. The variance is that of a Poisson process: a pixel sees some of
 // very many independent paths.

@@ -15,6 +15,14 @@ namespace {
 
 using glm::dvec3;
 
+constexpr uint64_t kPiecesPerWorker = 4, kLeastPiece = 1 << 14, kMostPiece = 1 << 19;
+
+uint64_t paths_of_pass(const Plan& plan) {
+  uint64_t paths = 0;
+  for (const LampPaths& lamp : plan.lamp_paths) paths += lamp.per_pass;
+  return paths;
+}
+
 dvec3 to_dvec3(const float* v) { return {v[0], v[1], v[2]}; }
 
 bool casts(uint32_t bin) { return bin > kDiffuse && bin < kSurfaceBins; }
@@ -160,16 +168,21 @@ void drop_unseen_light_paths(Plan& plan, const dvec3& size) {
   plan.lamp_paths.clear();
 }
 
-std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint64_t passes) {
-  constexpr uint64_t kPiece = 1 << 15;
+std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint64_t passes, uint32_t workers) {
+  const uint64_t paths =
+      std::clamp(passes * paths_of_pass(plan) / (kPiecesPerWorker * workers), kLeastPiece, kMostPiece);
   std::vector<LightPiece> pieces;
   for (uint32_t light = 0; light < plan.lamp_paths.size(); ++light) {
     const uint64_t per_pass = plan.lamp_paths[light].per_pass, end = (first_pass + passes) * per_pass;
-    for (uint64_t first = first_pass * per_pass; first < end; first += kPiece) {
-      pieces.push_back({light, first, static_cast<uint32_t>(std::min(kPiece, end - first))});
+    for (uint64_t first = first_pass * per_pass; first < end; first += paths) {
+      pieces.push_back({light, first, static_cast<uint32_t>(std::min(paths, end - first))});
     }
   }
   return pieces;
+}
+
+uint64_t passes_at_a_time(const Plan& plan, uint32_t workers) {
+  return std::max<uint64_t>(1, kPiecesPerWorker * workers * kMostPiece / paths_of_pass(plan));
 }
 
 }  // namespace lanewise

@@ -56,7 +56,10 @@ struct LightPiece {
   uint32_t count = 0;
 };
 
-// Passes first_pass .. first_pass + passes - 1 in pieces of a few waves.
-std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint64_t passes);
+// Passes first_pass .. first_pass + passes - 1 in pieces: some for each worker, none of more than half a second or so.
+std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint64_t passes, uint32_t workers);
+
+// Passes that workers are to draw between two pauses: some pieces each.
+uint64_t passes_at_a_time(const Plan& plan, uint32_t workers);
 
 }  // namespace lanewise

@@ -12,12 +12,13 @@ namespace lanewise {
 
 // The first byte of a message, and what follows it.
 enum class MessageKind : uint8_t {
-  kReady,   // to rank 0: threads, identity
-  kFailed,  // to rank 0: why
-  kDraw,    // to another: desk, first sample, count, pixels as runs
-  kDrawn,   // to rank 0: desk, Drawn, each pixel's sums packed
-  kEnd,     // to another
-  kProfile  // to rank 0, the last: what it counted, nothing if it failed
+  kReady,      // to rank 0: threads, identity
+  kFailed,     // to rank 0: why
+  kDraw,       // to another: desk, first sample, count, pixels as runs
+  kDrawn,      // to rank 0: desk, Drawn, each pixel's sums packed; of light paths as pack_splats() has them
+  kDrawLight,  // to another: desk, LightPiece
+  kEnd,        // to another
+  kProfile     // to rank 0, the last: what it counted, nothing if it failed
 };
 
 inline ByteWriter message(MessageKind kind) {

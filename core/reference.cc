@@ -196,10 +196,10 @@ class LightPaths : public LightPathDraw {
  public:
   LightPaths(const Plan& plan, std::vector<Profile>& profiles) : plan_(plan), profiles_(profiles) {}
 
-  uint32_t workers() const override { return thread_count(plan_.settings); }
-  std::vector<LightPiece> pieces(uint64_t first, uint64_t passes) const override {
-    return light_pieces(plan_, first, passes);
+  std::vector<LightPiece> pieces(uint64_t first, uint64_t passes, uint32_t workers) const override {
+    return light_pieces(plan_, first, passes, workers);
   }
+  uint64_t passes_at_a_time(uint32_t workers) const override { return lanewise::passes_at_a_time(plan_, workers); }
   uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) override {
     Profile& profile = profiles_[worker];
     const uint64_t before = profile.rays();

@@ -38,7 +38,23 @@ void RemoteRanks::meet(const RenderIdentity& expected) {
 
 Drawn RemoteRanks::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
                         uint32_t worker) {
-  std::string request = message(MessageKind::kDraw).put(worker).put(first).put(count).put(runs_of(pixels)).take();
+  std::string packed;
+  const Drawn took =
+      ask(worker, message(MessageKind::kDraw).put(worker).put(first).put(count).put(runs_of(pixels)).take(), packed);
+  ByteReader packed_sums(packed);
+  for (const uint32_t pixel : pixels) sums[pixel] += unpack_sums(packed_sums);
+  return took;
+}
+
+Drawn RemoteRanks::draw_light(const LightPiece& piece, LightFilm& film, uint32_t worker) {
+  std::string packed;
+  const Drawn took = ask(worker, message(MessageKind::kDrawLight).put(worker).put(piece).take(), packed);
+  ByteReader packed_sums(packed);
+  film.add(packed_sums);
+  return took;
+}
+
+Drawn RemoteRanks::ask(uint32_t worker, std::string request, std::string& packed) {
   std::string reply;
   {
     std::unique_lock lock(mutex_);
@@ -53,9 +69,7 @@ Drawn RemoteRanks::draw(const std::vector<uint32_t>& pixels, uint64_t first, uin
   in.get<MessageKind>();
   in.get<uint32_t>();
   const auto took = in.get<Drawn>();
-  const std::string packed = in.text();
-  ByteReader packed_sums(packed);
-  for (const uint32_t pixel : pixels) sums[pixel] += unpack_sums(packed_sums);
+  packed = in.text();
   return took;
 }
 
@@ -133,6 +147,7 @@ void RemoteRanks::take(uint32_t from, Rank& rank, std::string&& bytes) {
       if (!in.empty()) rank.profile = get_profile(in);
       break;
     case MessageKind::kDraw:
+    case MessageKind::kDrawLight:
     case MessageKind::kEnd:
       break;
   }

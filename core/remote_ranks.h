@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/light_film.h"
 #include "core/local_draw.h"
 #include "core/messenger.h"
 #include "core/profile.h"
@@ -35,6 +36,9 @@ class RemoteRanks {
   // As LocalDraw::draw(), for worker < workers(): returns when it is done. Throws Error, naming the rank, if it fails.
   Drawn draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums, uint32_t worker);
 
+  // The same of light paths.
+  Drawn draw_light(const LightPiece& piece, LightFilm& film, uint32_t worker);
+
   // Ends them: what each has counted, and then what is to be said of it. No draws after that.
   std::vector<Profile> profiles();
   std::vector<RankStats> stats() const;
@@ -58,6 +62,8 @@ class RemoteRanks {
     std::condition_variable changed;
   };
 
+  // Sends the request from that desk, and waits for what comes back: the sums, packed.
+  Drawn ask(uint32_t worker, std::string request, std::string& packed);
   void handle(uint32_t from, std::string&& bytes);
   void take(uint32_t from, Rank& rank, std::string&& bytes);  // with mutex_ held
   void send(uint32_t to, std::string bytes);                  // with mutex_ held

@@ -13,20 +13,26 @@
 namespace lanewise {
 namespace {
 
-// On this process's threads.
+// On this process's threads, and by other ranks.
 class LightPaths : public LightPathDraw {
  public:
-  LightPaths(const Plan& plan, LocalDraw& local, std::atomic<uint64_t>& invalid)
-      : plan_(plan), local_(local), invalid_(invalid) {}
+  LightPaths(const Plan& plan, LocalDraw& local, RemoteRanks* remote, std::atomic<uint64_t>& invalid)
+      : plan_(plan), local_(local), remote_(remote), invalid_(invalid) {}
 
-  uint32_t workers() const override { return thread_count(plan_.settings); }
-  std::vector<LightPiece> pieces(uint64_t first, uint64_t passes) const override {
-    return light_pieces(plan_, first, passes);
+  std::vector<LightPiece> pieces(uint64_t first, uint64_t passes, uint32_t workers) const override {
+    return light_pieces(plan_, first, passes, workers);
   }
+  uint64_t passes_at_a_time(uint32_t workers) const override { return lanewise::passes_at_a_time(plan_, workers); }
   uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) override {
-    Splats splats;
-    const Drawn took = local_.draw_light(piece, splats, worker);
-    film.add(splats.list);
+    const uint32_t threads = thread_count(plan_.settings);
+    Drawn took;
+    if (worker < threads) {
+      Splats splats;
+      took = local_.draw_light(piece, splats, worker);
+      film.add(splats.list);
+    } else {
+      took = remote_->draw_light(piece, film, worker - threads);
+    }
     invalid_ += took.invalid_samples;
     return took.rays;
   }
@@ -34,6 +40,7 @@ class LightPaths : public LightPathDraw {
  private:
   const Plan& plan_;
   LocalDraw& local_;
+  RemoteRanks* remote_;
   std::atomic<uint64_t>& invalid_;
 };
 
@@ -51,7 +58,7 @@ RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetai
     invalid += took.invalid_samples;
     return took.rays;
   };
-  LightPaths light(plan, local, invalid);
+  LightPaths light(plan, local, control.remote, invalid);
   const RenderControl counting = count_invalid(control, [&] { return invalid.load(); });
   const uint32_t workers = threads + (control.remote ? control.remote->workers() : 0);
   Exposure exposure = expose(plan.settings, workers, draw, counting, has_light_paths(plan) ? &light : nullptr);

@@ -121,15 +121,14 @@ class Rounds {
 
   // Brings the light paths to that many passes, with pauses to save. False if time was up, or the render was stopped, before that.
   bool draw_light(uint64_t passes) {
-    constexpr uint64_t kPieces = 64;  // between two pauses: a second or so of one thread
     while (light_ && light_film_->passes() < passes) {
       if (intervals_.stopped() || (done_ > 0 && timed() && drawing_time_left() <= 0)) return false;
       const uint64_t first = settings_.first_sample + light_film_->passes(), left = passes - light_film_->passes();
-      const uint64_t some = std::clamp<uint64_t>(kPieces / light_->pieces(first, 1).size(), 1, left);
-      const std::vector<LightPiece> pieces = light_->pieces(first, some);
+      const uint64_t some = std::min(left, light_->passes_at_a_time(workers_));
+      const std::vector<LightPiece> pieces = light_->pieces(first, some, workers_);
       std::atomic<uint64_t> rays{0};
       run_workers(
-          light_->workers(), pieces.size(),
+          workers_, pieces.size(),
           [&](size_t item, uint32_t worker) {
             rays += light_->draw(pieces[item], *light_film_, worker);
             return uint64_t{0};

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/light_film.h"
 #include "core/local_draw.h"
 #include "core/packed_sums.h"
 #include "core/rank_messages.h"
@@ -56,8 +57,13 @@ class Inbox {
 std::string drawn(LocalDraw& local, const std::string& request, uint32_t worker, std::vector<PixelSums>& sums,
                   std::vector<uint32_t>& slots) {
   ByteReader in(request);
-  in.get<MessageKind>();
+  const auto kind = in.get<MessageKind>();
   const auto desk = in.get<uint32_t>();
+  if (kind == MessageKind::kDrawLight) {
+    Splats splats;
+    const Drawn took = local.draw_light(in.get<LightPiece>(), splats, worker);
+    return message(MessageKind::kDrawn).put(desk).put(took).put(pack_splats(splats.list)).take();
+  }
   const auto first = in.get<uint64_t>();
   const auto count = in.get<uint32_t>();
   const std::vector<uint32_t> pixels = pixels_of(in.list<PixelRun>());

@@ -161,10 +161,12 @@ TEST_CASE("light paths: pieces are all paths of the passes, once each") {
   Settings settings;
   settings.width = 1200, settings.height = 900;
   const Plan plan = test::test_plan(settings);
-  for (const uint64_t passes : {1u, 3u}) {
+  CHECK(passes_at_a_time(plan, 1) < 10);  // of a large picture
+  CHECK(passes_at_a_time(test::test_plan(small()), 1) > 1000);
+  for (const auto& [passes, workers] : {std::pair{1u, 1u}, {3u, 1u}, {3u, 100u}, {100u, 2u}}) {
     std::vector<uint64_t> next(plan.lights.size());
     for (size_t i = 0; i < next.size(); ++i) next[i] = 7 * uint64_t{plan.lamp_paths[i].per_pass};
-    for (const LightPiece& piece : light_pieces(plan, 7, passes)) {
+    for (const LightPiece& piece : light_pieces(plan, 7, passes, workers)) {
       CHECK(piece.first == next[piece.light]);
       CHECK(piece.count > 0);
       next[piece.light] += piece.count;
@@ -195,6 +197,15 @@ TEST_CASE("light film: the same sums from any thread, in any order") {
   }
   for (std::thread& thread : threads) thread.join();
   CHECK(std::ranges::equal(one.film().sums, many.film().sums));
+  LightFilm sent(kPixels);
+  const std::string packed = pack_splats(splats);
+  ByteReader reader(packed);
+  sent.add(reader);
+  CHECK(std::ranges::equal(one.film().sums, sent.film().sums));
+  for (const size_t length : {size_t{2}, packed.size() / 2 + 1, packed.size() - 1}) {
+    ByteReader cut(std::string_view(packed).substr(0, length));
+    CHECK_THROWS(sent.add(cut));
+  }
   CHECK(many.passes() == 0);
   many.drew(3);
   CHECK(many.passes() == 3);
