@@ -43,9 +43,12 @@ constexpr uint64_t mix_epoch(uint64_t x) {
 }
 constexpr uint64_t epoch_of(uint64_t sample) { return mix_epoch(sample >> 32); }
 
-// The same for the light paths of a lamp. Its path number n has the numbers of sample n % 2^kSequenceBits of "pixel"
-// n / 2^kSequenceBits: so those of a sequence share a picture, not a pixel.
-constexpr uint64_t light_path_epoch(uint32_t light) { return mix_epoch((uint64_t{1} << 40) + light); }
+// The same for the light paths of a lamp: path `number` of passes with that pass / 2^32. It has the numbers of sample
+// number % 2^kSequenceBits of "pixel" number / 2^kSequenceBits: those of a sequence share a picture, not a pixel.
+constexpr uint64_t light_path_epoch(uint32_t light, uint64_t number, uint64_t pass) {
+  const uint64_t epoch = mix_epoch((uint64_t{1} << 40) + light + (number >> 48 << 42));
+  return pass >> 32 == 0 ? epoch : epoch ^ mix_epoch((uint64_t{1} << 41) + (pass >> 32));
+}
 
 // Where a second, independent estimate of a pixel begins to count its samples; so a first one has no more than these.
 constexpr uint64_t kSecondEstimate = uint64_t{1} << 63;

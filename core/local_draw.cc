@@ -47,7 +47,10 @@ Drawn LocalDraw::draw_light(const LightPiece& piece, Splats& splats, uint32_t wo
   const Profile& profile = wave.profiler().profile;
   const uint64_t rays = profile.rays(), invalid = splats.invalid;
   for (uint32_t done = 0; done < piece.count; done += wave.size()) {
-    wave.run_light_paths(piece.light, piece.first + done, std::min(wave.size(), piece.count - done), splats);
+    LightPiece part = piece;
+    part.first += done;
+    part.count = std::min(wave.size(), piece.count - done);
+    wave.run_light_paths(part, splats);
   }
   return {profile.rays() - rays, splats.invalid - invalid};
 }

@@ -17,6 +17,13 @@ using glm::dvec3;
 
 constexpr uint64_t kPiecesPerWorker = 4, kLeastPiece = 1 << 14, kMostPiece = 1 << 19;
 
+// Passes that paths are counted on through; and paths that share an epoch: see light_path_epoch().
+constexpr uint64_t kEra = uint64_t{1} << 32, kEpoch = uint64_t{1} << 48;
+
+double power_of(const PlanLight& light) {
+  return luminance(light.radiance[0], light.radiance[1], light.radiance[2]) * light.area;
+}
+
 uint64_t paths_of_pass(const Plan& plan) {
   uint64_t paths = 0;
   for (const LampPaths& lamp : plan.lamp_paths) paths += lamp.per_pass;
@@ -116,7 +123,7 @@ const char* why_no_light_paths(const Plan& plan) {
     return "the course program's formulas are not reciprocal";
   if (settings.max_depth < 2 || (settings.only_bounce && *settings.only_bounce < 2))
     return "no path of two scattering events";
-  if (plan.lights.empty()) return "no lamp";
+  if (std::ranges::none_of(plan.lights, [](const PlanLight& light) { return power_of(light) > 0; })) return "no lamp";
   if (!in_use(plan, kDiffuse)) return "no diffuse surface";
   if (std::ranges::none_of(plan.prim_bin, casts)) return "only diffuse surfaces";
   if (plan.shown < kLeastShown) return "the picture shows too little of diffuse surfaces";
@@ -138,24 +145,24 @@ void choose_light_paths(Plan& plan, std::span<const FlatTriangle> triangles, std
   }
   if (plan.casters.size() > kMaxCasters) plan.casters = {caster_around(plan.casters)};
 
-  std::vector<double> powers;
-  double power = 0;
+  std::vector<double> angles;  // of all casters, from each lamp
+  double power = 0;            // that goes there
   for (const PlanLight& light : plan.lights) {
-    double angle = 0;
-    for (const Caster& caster : plan.casters) angle += solid_angle(caster, middle(plan, light));
-    powers.push_back(luminance(light.radiance[0], light.radiance[1], light.radiance[2]) * light.area * angle);
-    power += powers.back();
+    angles.push_back(0);
+    for (const Caster& caster : plan.casters) angles.back() += solid_angle(caster, middle(plan, light));
+    power += power_of(light) * angles.back();
   }
   const double all = std::ceil(static_cast<double>(plan.settings.width) * plan.settings.height / kPixelsPerLightPath);
   for (size_t i = 0; i < plan.lights.size(); ++i) {
     const PlanLight& light = plan.lights[i];
-    const float brightest = std::max({light.radiance[0], light.radiance[1], light.radiance[2]});
-    double angle = 0;
-    for (const Caster& caster : plan.casters) angle += solid_angle(caster, middle(plan, light));
+    const double share = power_of(light) * angles[i] / power;
     LampPaths paths;
-    paths.per_pass = static_cast<uint32_t>(std::max(1.0, std::round(all * powers[i] / power)));
-    paths.throughput = static_cast<float>(1 / angle);
-    paths.scale = static_cast<float>(double{brightest} * light.area * angle / paths.per_pass);
+    if (share > 0) {  // a lamp that is switched off sends out none
+      const float brightest = std::max({light.radiance[0], light.radiance[1], light.radiance[2]});
+      paths.per_pass = static_cast<uint32_t>(std::max(1.0, std::round(all * share)));
+      paths.throughput = static_cast<float>(1 / angles[i]);
+      paths.scale = static_cast<float>(double{brightest} * light.area * angles[i] / paths.per_pass);
+    }
     plan.lamp_paths.push_back(paths);
   }
 }
@@ -172,11 +179,17 @@ std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint
   const uint64_t paths =
       std::clamp(passes * paths_of_pass(plan) / (kPiecesPerWorker * workers), kLeastPiece, kMostPiece);
   std::vector<LightPiece> pieces;
-  for (uint32_t light = 0; light < plan.lamp_paths.size(); ++light) {
-    const uint64_t per_pass = plan.lamp_paths[light].per_pass, end = (first_pass + passes) * per_pass;
-    for (uint64_t first = first_pass * per_pass; first < end; first += paths) {
-      pieces.push_back({light, first, static_cast<uint32_t>(std::min(paths, end - first))});
+  while (passes > 0) {
+    const uint64_t pass = first_pass % kEra, some = std::min(passes, kEra - pass);
+    for (uint32_t light = 0; light < plan.lamp_paths.size(); ++light) {
+      const uint64_t per_pass = plan.lamp_paths[light].per_pass, end = (pass + some) * per_pass;
+      for (uint64_t first = pass * per_pass; first < end; first += pieces.back().count) {
+        const uint64_t count = std::min({paths, end - first, kEpoch - first % kEpoch});
+        pieces.push_back({light, static_cast<uint32_t>(count), first, light_path_epoch(light, first, first_pass)});
+      }
     }
+    first_pass += some;
+    passes -= some;
   }
   return pieces;
 }

@@ -49,11 +49,12 @@ inline bool has_light_paths(const Plan& plan) { return !plan.casters.empty(); }
 // Why there are none; "" if there are.
 const char* why_no_light_paths(const Plan& plan);
 
-// Paths first .. first + count - 1 of a lamp.
+// Paths first .. first + count - 1 of a lamp, counted from a pass that is a multiple of 2^32 on; all of one epoch.
 struct LightPiece {
   uint32_t light = 0;
-  uint64_t first = 0;
   uint32_t count = 0;
+  uint64_t first = 0;
+  uint64_t epoch = 0;
 };
 
 // Passes first_pass .. first_pass + passes - 1 in pieces: some for each worker, none of more than half a second or so.

@@ -214,7 +214,7 @@ class LightPaths : public LightPathDraw {
       Path<T> p;
       p.pixel = light_path_pixel(number);
       p.sample = light_path_sample(number);
-      p.step = {.light = piece.light, .epoch = light_path_epoch(piece.light)};
+      p.step = {.light = piece.light, .epoch = piece.epoch};
       trace_light_path(plan_, p, profile, see);
     }
     film.add(splats);

@@ -3,6 +3,7 @@
 
 #include "core/path_buffer.h"
 #include "core/plan.h"
+#include "core/plan_light_paths.h"
 #include "core/profiler.h"
 #include "core/splats.h"
 #include "kernels/kernels.h"
@@ -17,8 +18,8 @@ class Wave {
   // Computes the batch's samples (at most size() paths) and adds them to their pixels' sums in the film.
   void run(const Batch& batch, PixelSums* film);
 
-  // Follows paths first .. first + paths - 1 (at most size()) of a lamp, and adds what the camera sees of them.
-  void run_light_paths(uint32_t light, uint64_t first, uint32_t paths, Splats& splats);
+  // Follows the light paths of a piece (at most size()), and adds what the camera sees of them.
+  void run_light_paths(const LightPiece& piece, Splats& splats);
 
   uint32_t size() const { return size_; }
   const Profiler& profiler() const { return profiler_; }

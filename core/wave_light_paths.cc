@@ -4,15 +4,15 @@
 
 namespace lanewise {
 
-void Wave::run_light_paths(uint32_t light, uint64_t first, uint32_t count, Splats& splats) {
-  const auto wave = profiler_.wave(count);
+void Wave::run_light_paths(const LightPiece& piece, Splats& splats) {
+  const auto wave = profiler_.wave(piece.count);
   const Settings& settings = plan_.settings;
-  state_.batch = {.first_path = first, .paths = count};
-  state_.step = {.light = light, .epoch = light_path_epoch(light), .from_light = true};
-  Range live{0, count};
-  uint32_t paths = count;
+  state_.batch = {.first_path = piece.first, .paths = piece.count};
+  state_.step = {.light = piece.light, .epoch = piece.epoch, .from_light = true};
+  Range live{0, piece.count};
+  uint32_t paths = piece.count;
   run(Stage::kEmit, live);
-  profile_.light_paths += count;
+  profile_.light_paths += piece.count;
 
   for (uint32_t bounce = 0; paths > 0; ++bounce) {
     state_.step.bounce = bounce;

@@ -26,7 +26,7 @@ struct Cone {
 HWY_INLINE Cone SeenFrom(const Caster& caster, const Vec3& from) {
   const VF one = Splat(1.0f);
   const Vec3 to = Sub(SplatVec3(caster.center), from);
-  const VF distance2 = Dot(to, to);
+  const VF distance2 = hn::Max(Dot(to, to), Splat(1e-30f));
   const VF sine2 = hn::Div(Splat(caster.radius * caster.radius), distance2);
   const VF height = hn::Div(sine2, hn::Add(one, hn::Sqrt(hn::Max(hn::Sub(one, sine2), hn::Zero(DF())))));
   return {Scale(hn::Div(one, hn::Sqrt(distance2)), to), hn::IfThenElse(hn::Lt(sine2, one), height, Splat(2.0f))};

@@ -53,7 +53,7 @@ TEST_CASE(
       const Plan plan = make_plan(scene, settings);
       REQUIRE(has_light_paths(plan));
       for (uint32_t light = 0; light < plan.lights.size(); ++light) {
-        test::check_kernel(plan, "emit", {.light = light, .epoch = light_path_epoch(light), .from_light = true});
+        test::check_kernel(plan, "emit", {.light = light, .epoch = light_path_epoch(light, 0, 0), .from_light = true});
         test::check_kernel(plan, "connect_camera", {.bounce = 2, .light = light, .from_light = true});
       }
     }
@@ -169,10 +169,45 @@ TEST_CASE("light paths: pieces are all paths of the passes, once each") {
     for (const LightPiece& piece : light_pieces(plan, 7, passes, workers)) {
       CHECK(piece.first == next[piece.light]);
       CHECK(piece.count > 0);
+      CHECK(piece.epoch == light_path_epoch(piece.light, 0, 0));
       next[piece.light] += piece.count;
     }
     for (size_t i = 0; i < next.size(); ++i) CHECK(next[i] == (7 + passes) * plan.lamp_paths[i].per_pass);
   }
+}
+
+TEST_CASE("light paths: no two share their numbers, up to the last sample") {
+  const Plan plan = test::test_plan(small());
+  const uint64_t per_pass = paths_of_pass(plan);
+  for (const uint64_t first : {(uint64_t{1} << 32) - 2, (uint64_t{1} << 48) / per_pass - 1, kMaxSpp - 4}) {
+    uint64_t paths = 0;
+    std::vector<LightPiece> pieces = light_pieces(plan, first, 4, 1), far = light_pieces(plan, 0, 4, 1);
+    for (const LightPiece& piece : pieces) {
+      paths += piece.count;
+      // All of it has the epoch's upper digits.
+      CHECK(piece.first >> 48 == (piece.first + piece.count - 1) >> 48);
+      for (const LightPiece& other : far) {
+        const bool same = other.light == piece.light && other.epoch == piece.epoch;
+        CHECK((!same || piece.first >= other.first + other.count));
+      }
+    }
+    CHECK(paths == 4 * per_pass);
+  }
+  CHECK(light_path_epoch(0, 0, 0) != light_path_epoch(1, 0, 0));
+  CHECK(light_path_epoch(0, 0, 0) != light_path_epoch(0, uint64_t{1} << 48, 0));
+  CHECK(light_path_epoch(0, 0, 0) != light_path_epoch(0, 0, uint64_t{1} << 32));
+  CHECK(light_path_epoch(0, 0, 0) == light_path_epoch(0, 5, 7));
+}
+
+TEST_CASE("light paths: a lamp that is switched off sends out none") {
+  Scene scene = test::test_scene();
+  scene.materials[test::kSmallLight].radiance = {0, 0, 0};
+  const Plan plan = make_plan(scene, small());
+  REQUIRE(has_light_paths(plan));
+  CHECK(plan.lamp_paths[1].per_pass == 0);
+  CHECK(render(plan).stats.invalid_samples == 0);
+  scene.materials[test::kCeilingLight].radiance = {0, 0, 0};
+  CHECK(why_none(small(), scene) == "no lamp");
 }
 
 TEST_CASE("light film: the same sums from any thread, in any order") {

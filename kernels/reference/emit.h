@@ -18,7 +18,7 @@ struct Cone {
 
   Cone(const Caster& caster, const Vec3<T>& from) {
     const Vec3<T> to = vec3<T>(caster.center) - from;
-    const T distance2 = glm::dot(to, to), sine2 = T(caster.radius) * T(caster.radius) / distance2;
+    const T distance2 = std::max(glm::dot(to, to), T(1e-30f)), sine2 = T(caster.radius) * T(caster.radius) / distance2;
     axis = to / std::sqrt(distance2);
     height = sine2 < 1 ? sine2 / (1 + std::sqrt(1 - sine2)) : T(2);
   }

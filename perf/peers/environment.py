@@ -75,7 +75,8 @@ class Subject(unbiased.Subject):
 
     def lanewise(self, depth, samples, seed, normals=None):
         picture, stats = lanewise.render(
-            self.path, *self.flags, '--connect', 'on' if self.connect else 'off', '-r', str(unbiased.WIDTH),
+            self.path, *self.flags, '--light-paths', 'off', '--connect', 'on' if self.connect else 'off',
+            '-r', str(unbiased.WIDTH),
             str(unbiased.HEIGHT), '-s', str(samples), '-m', str(depth), '--seed', str(seed), '--normals', 'flat', '-t',
             str(self.threads), camera=self.camera)
         if stats['invalid_samples']:
