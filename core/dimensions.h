@@ -14,10 +14,12 @@ namespace lanewise {
 // the scene's own, which is kSetPath's: add light * light_samples + light_sample. Those of connections follow, by light and
 // sample again.
 enum RandomPurpose : uint32_t {
-  kSetPath = 0,  // the way to the vertex (place in the pixel, or direction from the one before); its first light sample
-  kSetChoice = 1,             // lobe, roulette, patch of the first light sample
-  kSetLens = 2,               // point on the lens (bounce 0 only)
-  kSetLight = 3,              // a light sample
+  kSetPath =
+      0,  // the way to the vertex (place in the pixel, or direction from the one before); its first light sample. Of a
+          // light path at bounce 0: its point of the lamp, and its direction
+  kSetChoice = 1,  // lobe, roulette, patch of the first light sample; of a light path at bounce 0: patch and caster
+  kSetLens = 2,    // point on the lens (of camera paths at bounce 0; where a light path is seen, at any)
+  kSetLight = 3,   // a light sample
   kSetsPerBounce = 1u << 16,  // so at most 65,533 samples of lights and connections a vertex, and 65,535 bounces
 };
 

@@ -10,6 +10,7 @@ Image develop(const Film& film, uint32_t width, const Window& window, const Film
   for (uint32_t y = 0; y < window.height; ++y) {
     for (uint32_t x = 0; x < window.width; ++x) {
       const size_t i = size_t{window.y + y} * width + window.x + x;
+      if (film.samples[i] == 0) continue;
       double sum[3] = {};
       for (const Film* part : {&film, light}) {
         if (!part || part->samples[i] == 0) continue;

@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include "core/packed_sums.h"
+#include "core/types.h"
 
 namespace lanewise {
 
 LightFilm::LightFilm(size_t pixels) : film_(pixels) { std::ranges::fill(film_.sums, PixelSums{}); }
 
-// In the order of the bands, so that each lock is taken once.
+// In the order of the bands, so that each lock is taken once at most.
 void LightFilm::add(const std::vector<Splat>& splats) {
   const size_t band = (film_.sums.size() + kBands - 1) / kBands;
   std::array<size_t, kBands + 1> begin{};
@@ -18,6 +19,7 @@ void LightFilm::add(const std::vector<Splat>& splats) {
   std::array<size_t, kBands + 1> next = begin;
   for (const Splat& splat : splats) sorted[next[splat.pixel / band]++] = splat;
   for (size_t k = 0; k < kBands; ++k) {
+    if (begin[k] == begin[k + 1]) continue;
     const std::lock_guard lock(locks_[k]);
     for (size_t i = begin[k]; i < begin[k + 1]; ++i) {
       film_.sums[sorted[i].pixel].add(sorted[i].r, sorted[i].g, sorted[i].b);
@@ -30,10 +32,11 @@ void LightFilm::add(ByteReader& packed) {
   std::unique_lock<std::mutex> lock;
   for (size_t last = kBands; !packed.empty();) {
     const auto pixel = packed.get<uint32_t>();
+    if (pixel >= film_.sums.size()) throw Error("light paths beyond the picture");
     const size_t k = pixel / band;
     if (k != last) {
       if (lock) lock.unlock();
-      lock = std::unique_lock(locks_.at(k));
+      lock = std::unique_lock(locks_[k]);
       last = k;
     }
     film_.sums[pixel] += unpack_sums(packed);

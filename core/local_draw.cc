@@ -42,17 +42,21 @@ Drawn LocalDraw::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint3
   return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
 }
 
-Drawn LocalDraw::draw_light(const LightPiece& piece, Splats& splats, uint32_t worker) {
+Drawn LocalDraw::draw_light(const LightPiece& piece, uint32_t worker,
+                            const std::function<void(std::vector<Splat>&)>& take) {
   Wave& wave = this->wave(worker);
   const Profile& profile = wave.profiler().profile;
-  const uint64_t rays = profile.rays(), invalid = splats.invalid;
+  const Drawn before{profile.rays(), profile.invalid_samples};
+  std::vector<Splat> splats;
   for (uint32_t done = 0; done < piece.count; done += wave.size()) {
     LightPiece part = piece;
     part.first += done;
     part.count = std::min(wave.size(), piece.count - done);
     wave.run_light_paths(part, splats);
+    if (splats.size() >= kMostSplats) take(splats), splats.clear();
   }
-  return {profile.rays() - rays, splats.invalid - invalid};
+  take(splats);
+  return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
 }
 
 std::vector<Profile> LocalDraw::profiles() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,8 +29,8 @@ class LocalDraw {
   Drawn draw(const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums, uint32_t worker,
              const uint32_t* slots = nullptr);
 
-  // Adds what the camera sees of these light paths.
-  Drawn draw_light(const LightPiece& piece, Splats& splats, uint32_t worker);
+  // Hands what the camera sees of these light paths to take(), some at a time; it leaves the list empty.
+  Drawn draw_light(const LightPiece& piece, uint32_t worker, const std::function<void(std::vector<Splat>&)>& take);
 
   // While no thread draws; of each that has.
   std::vector<Profile> profiles() const;

@@ -70,10 +70,11 @@ constexpr float kConnected = -1;
 
 // Where there are light paths, they bring what lamps (lights other than the environment) send to a diffuse surface that the camera
 // sees, at once or by way of further surfaces of any kind, through a first one that is not diffuse: see core/plan_light_paths.h.
+// Which path from the camera looks for lamps:
 enum LampsBy : uint32_t {
-  kByItself,  // the camera sees a surface that is not diffuse, or there are no light paths: this path looks for all lamps
-  kByItselfYet,   // a diffuse one, and the last one is diffuse: this path does
-  kByLightPaths,  // a diffuse one, and the last one is not
+  kByItself,  // this one does: the camera sees a surface that is not diffuse, or a direction did not agree with a surface's normals
+  kByItselfYet,   // this one does: the camera sees a diffuse surface, and the path is at one
+  kByLightPaths,  // light paths do: the camera sees a diffuse surface, and the path is at another
 };
 
 // What all paths of a wave share at one moment.

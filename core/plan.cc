@@ -79,7 +79,7 @@ class Planner {
     plan_.environment = make_environment_map(scene_.environment, box_.diagonal(), scene_.up.y > 0.5);
     if (!plan_.environment.empty()) let_all_faces_block(plan_);
     build_trees();
-    drop_unseen_light_paths(plan_, box_.hi - box_.lo);
+    drop_unseen_light_paths(plan_, box_.hi - box_.lo);  // which changes no blocking faces: some may be tested in vain
     focus();
     choose_stages();
     connect_spheres(plan_);

@@ -103,12 +103,12 @@ struct Caster {
   float radius = 0;
 };
 
-// How a lamp sends out its light paths.
+// How a lamp sends out its light paths. They start with beta = its radiance over the largest channel of that, times `throughput`, the
+// cosine at the lamp and the solid angle of all cones over the number that the direction lies in: about 1.
 struct LampPaths {
-  uint32_t per_pass = 0;  // paths of one pass: there is a pass for every sample of the pixels
-  float throughput =
-      0;  // beta at the start = radiance / the largest of its channels * throughput * cosine * solid angle of the casters
-  float scale = 0;  // radiance that beta = 1 stands for, times solid angle and area
+  uint32_t per_pass = 0;  // a pass goes with every sample of the pixels
+  float throughput = 0;   // per steradian
+  float scale = 0;        // power that beta = 1 stands for, over a pass's paths: radiance, area, solid angle
 };
 
 // A triangle or sphere outside the trees, tested by whole vectors of rays.

@@ -15,7 +15,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr uint64_t kPiecesPerWorker = 4, kLeastPiece = 1 << 14, kMostPiece = 1 << 19;
+constexpr uint64_t kPiecesPerWorker = 4, kLeastPiece = 1 << 14, kMostPiece = 1 << 17;
 
 // Passes that paths are counted on through; and paths that share an epoch: see light_path_epoch().
 constexpr uint64_t kEra = uint64_t{1} << 32, kEpoch = uint64_t{1} << 48;
@@ -34,16 +34,18 @@ dvec3 to_dvec3(const float* v) { return {v[0], v[1], v[2]}; }
 
 bool casts(uint32_t bin) { return bin > kDiffuse && bin < kSurfaceBins; }
 
-// Around all corners, about the centre of their box; a little wider than that, as floats are.
+// The box of some points, and a sphere about its centre.
 class Hull {
  public:
   void add(const dvec3& low, const dvec3& high) { low_ = glm::min(low_, low), high_ = glm::max(high_, high); }
-  dvec3 center() const { return (low_ + high_) / 2.0; }
+  // As floats have it.
+  dvec3 center() const { return dvec3(glm::vec3((low_ + high_) / 2.0)); }
+  // Wider than the radius by more than what rays that are aimed at it are rounded by.
   Caster around(double radius) const {
-    Caster caster;
-    for (int k = 0; k < 3; ++k) caster.center[k] = static_cast<float>(center()[k]);
-    caster.radius = static_cast<float>(radius * (1 + 1e-5));
-    return caster;
+    const dvec3 c = center();
+    const double slack = 1e-5 * radius + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z));
+    return {{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)},
+            static_cast<float>(radius + slack)};
   }
 
  private:
@@ -60,6 +62,12 @@ Caster caster_around(std::span<const FlatTriangle> triangles) {
     for (const auto& v : t.v) radius = std::max(radius, glm::distance(hull.center(), to_dvec3(v)));
   }
   return hull.around(radius);
+}
+
+Caster caster_around(const FlatSphere& sphere) {
+  Hull hull;
+  hull.add(to_dvec3(sphere.center), to_dvec3(sphere.center));
+  return hull.around(sphere.radius);
 }
 
 Caster caster_around(const std::vector<Caster>& casters) {
@@ -137,11 +145,7 @@ void choose_light_paths(Plan& plan, std::span<const FlatTriangle> triangles, std
     plan.casters.push_back(caster_around(triangles.subspan(group.first, group.size)));
   }
   for (const FlatSphere& sphere : spheres) {
-    if (!casts(plan.prim_bin[sphere.prim])) continue;
-    Caster caster;
-    std::copy_n(sphere.center, 3, caster.center);
-    caster.radius = sphere.radius * 1.00001f;
-    plan.casters.push_back(caster);
+    if (casts(plan.prim_bin[sphere.prim])) plan.casters.push_back(caster_around(sphere));
   }
   if (plan.casters.size() > kMaxCasters) plan.casters = {caster_around(plan.casters)};
 

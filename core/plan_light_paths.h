@@ -57,7 +57,7 @@ struct LightPiece {
   uint64_t epoch = 0;
 };
 
-// Passes first_pass .. first_pass + passes - 1 in pieces: some for each worker, none of more than half a second or so.
+// Passes first_pass .. first_pass + passes - 1 in pieces: some for each worker, none of more than 2^17 paths.
 std::vector<LightPiece> light_pieces(const Plan& plan, uint64_t first_pass, uint64_t passes, uint32_t workers);
 
 // Passes that workers are to draw between two pauses: some pieces each.

@@ -59,7 +59,8 @@ class Rounds {
     saved.get_film("light", settings_.width, film);
     const std::vector<uint64_t> passes = sample_counts(film, settings_.width, settings_.window());
     const bool even = std::ranges::all_of(passes, [&](uint64_t n) { return n == passes[0]; });
-    saved.check(even && passes[0] <= settings_.spp, "damaged: its passes of light paths cannot be");
+    saved.check(even && passes[0] <= settings_.spp && passes[0] >= least_samples(),
+                "damaged: its passes of light paths cannot be");
     std::ranges::fill(film.samples, passes[0]);
   }
 
@@ -74,9 +75,13 @@ class Rounds {
     if (!timed()) return short_of(probes_.pixels().empty() ? left : std::min(done_, left));
     const double time_left = drawing_time_left();
     if (left == 0 || time_left <= 0) return 0;
-    return seconds_per_sample_ > 0 ? timed_round(done_, settings_.spp, time_left / seconds_per_sample_) : 1;
+    return seconds_per_sample_ > 0 ? short_of(timed_round(done_, settings_.spp, time_left / seconds_per_sample_)) : 1;
   }
-  static uint32_t short_of(uint64_t count) { return static_cast<uint32_t>(std::min<uint64_t>(count, kLongestRound)); }
+  // Light paths are drawn before the tiles of a round, which is not to be so long that one waits for them.
+  uint32_t short_of(uint64_t count) const {
+    const uint64_t longest = light_ ? light_->passes_at_a_time(workers_) : kLongestRound;
+    return static_cast<uint32_t>(std::min({count, longest, uint64_t{kLongestRound}}));
+  }
 
   // Of the window's pixels.
   uint64_t least_samples() const {
@@ -119,7 +124,7 @@ class Rounds {
         [&] { return done_ > 0 && time_is_up(); });
   }
 
-  // Brings the light paths to that many passes, with pauses to save. False if time was up, or the render was stopped, before that.
+  // Brings the light paths to that many passes. False if time was up, or the render was stopped, before that.
   bool draw_light(uint64_t passes) {
     while (light_ && light_film_->passes() < passes) {
       if (intervals_.stopped() || (done_ > 0 && timed() && drawing_time_left() <= 0)) return false;
@@ -133,7 +138,7 @@ class Rounds {
             rays += light_->draw(pieces[item], *light_film_, worker);
             return uint64_t{0};
           },
-          nullptr);
+          [&](const Progress&) { report(static_cast<double>(done_)); });
       rays_ += rays;
       light_film_->drew(some);
       intervals_.drew();

@@ -60,9 +60,10 @@ std::string drawn(LocalDraw& local, const std::string& request, uint32_t worker,
   const auto kind = in.get<MessageKind>();
   const auto desk = in.get<uint32_t>();
   if (kind == MessageKind::kDrawLight) {
-    Splats splats;
-    const Drawn took = local.draw_light(in.get<LightPiece>(), splats, worker);
-    return message(MessageKind::kDrawn).put(desk).put(took).put(pack_splats(splats.list)).take();
+    std::string packed;
+    const auto pack_some = [&](std::vector<Splat>& splats) { packed += pack_splats(splats); };
+    const Drawn took = local.draw_light(in.get<LightPiece>(), worker, pack_some);
+    return message(MessageKind::kDrawn).put(desk).put(took).put(packed).take();
   }
   const auto first = in.get<uint64_t>();
   const auto count = in.get<uint32_t>();

@@ -1,6 +1,7 @@
 // What the camera sees of light paths: radiance for pixels anywhere in the picture.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,13 +14,10 @@ struct Splat {
   float r, g, b;
 };
 
-// Of one thread.
-struct Splats {
-  std::vector<Splat> list;
-  uint64_t invalid = 0;  // left out: NaN, infinite or negative
+// More are not kept for long.
+constexpr size_t kMostSplats = 1 << 16;
 
-  // The L of a range of paths, at their `raster`.
-  void add(const PathState& s, Range range);
-};
+// Adds the L of the range's paths, at their `raster`. Returns how many were invalid (NaN, infinite or negative), and left out.
+uint32_t add_splats(const PathState& s, Range range, std::vector<Splat>& splats);
 
 }  // namespace lanewise

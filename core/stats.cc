@@ -48,7 +48,7 @@ RenderResult make_result(Exposure exposure, const std::vector<Profile>& profiles
   uint32_t threads = 0;
   for (const Profile& profile : profiles) {
     all.add(profile);
-    threads += profile.samples > 0;
+    threads += profile.samples + profile.light_paths > 0;
   }
   RenderResult result{std::move(exposure.image), std::move(exposure.samples), make_stats(all), std::move(all), {}};
   const double drawn = std::accumulate(result.samples.begin(), result.samples.end(), 0.0);

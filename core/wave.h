@@ -19,7 +19,7 @@ class Wave {
   void run(const Batch& batch, PixelSums* film);
 
   // Follows the light paths of a piece (at most size()), and adds what the camera sees of them.
-  void run_light_paths(const LightPiece& piece, Splats& splats);
+  void run_light_paths(const LightPiece& piece, std::vector<Splat>& splats);
 
   uint32_t size() const { return size_; }
   const Profiler& profiler() const { return profiler_; }
@@ -32,7 +32,7 @@ class Wave {
   Bins sort(Range range, uint32_t paths);
   // Counts a call, and clocks it as long as what is returned lasts.
   Profiler::Call count(Stage stage, Range range, uint32_t paths);
-  void see(Range vertices, Splats& splats);
+  void see(Range vertices, std::vector<Splat>& splats);
   void take_adjoint(Range range, uint32_t paths, bool leaving);
   // Notes which paths leave the lamps that come next to light paths.
   void take_lamps(const Bins& bins);

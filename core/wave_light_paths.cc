@@ -4,7 +4,7 @@
 
 namespace lanewise {
 
-void Wave::run_light_paths(const LightPiece& piece, Splats& splats) {
+void Wave::run_light_paths(const LightPiece& piece, std::vector<Splat>& splats) {
   const auto wave = profiler_.wave(piece.count);
   const Settings& settings = plan_.settings;
   state_.batch = {.first_path = piece.first, .paths = piece.count};
@@ -39,13 +39,13 @@ void Wave::run_light_paths(const LightPiece& piece, Splats& splats) {
 }
 
 // The camera sees the vertices of the range.
-void Wave::see(Range vertices, Splats& splats) {
+void Wave::see(Range vertices, std::vector<Splat>& splats) {
   run(Stage::kConnectCamera, vertices);
   profile_.count_rays(Stage::kOcclude, state_.step.bounce, count_shadow_rays(state_, vertices));
   run(Stage::kOcclude, vertices);
   if (vertices.empty()) return;
   const auto call = count(Stage::kSplat, vertices, vertices.size());
-  splats.add(state_, vertices);
+  profile_.invalid_samples += add_splats(state_, vertices, splats);
 }
 
 void Wave::take_adjoint(Range range, uint32_t paths, bool leaving) {

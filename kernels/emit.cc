@@ -61,7 +61,10 @@ struct ChosenCone {
     VF cover = Splat(1.0f);
     for (size_t k = 0; k < plan.casters.size() && plan.casters.size() > 1; ++k) {
       const Cone other = SeenFrom(plan.casters[k], from);
-      const MF inside = hn::Ge(Dot(direction, other.axis), hn::Sub(Splat(1.0f), other.height));
+      // 1 - cosine of the angle between them is half the square of their difference.
+      const Vec3 apart = Sub(direction, other.axis);
+      const MF inside =
+          hn::Or(hn::Le(Dot(apart, apart), hn::Add(other.height, other.height)), hn::Eq(other.height, Splat(2.0f)));
       const MF chosen = hn::Eq(index, Splat(static_cast<float>(k)));
       cover = hn::Add(cover, hn::IfThenElseZero(hn::AndNot(chosen, inside), Splat(1.0f)));
     }

@@ -99,7 +99,7 @@ constexpr KernelBounds kConnectCameraBounds = {
     .fields = {reach_ulps("l", 2.5), input_ulps("c", 8), exact("L"), exact("raster")},
     .choice = {.margin = 4, .max_share = 2e-3}};
 
-// splat is no kernel but Splats::add: it sets aside what the camera sees, L at `raster`.
+// splat is no kernel but add_splats() of core/splats.h: it sets aside what the camera sees, L at `raster`.
 constexpr KernelFields kSplatFields = {.reads = "L raster", .writes = ""};
 
 // Adds the radiance of the light that was hit from its front, weighted against light sampling by the power heuristic

@@ -32,6 +32,29 @@ std::string why_none(const Settings& settings, const Scene& scene = test::test_s
   return why_no_light_paths(plan);
 }
 
+// The cover of directions towards two casters in one place, as light paths have it, on average over them: 2 wherever they are.
+double mean_cover(double distance) {
+  Scene scene = test::test_box();
+  scene.spheres = {{"a", {0, distance, 0.75}, 0.3, test::kMirrorMaterial},
+                   {"b", {0, distance, 0.75}, 0.3, test::kMirrorMaterial}};
+  Plan plan = make_plan(scene, small());
+  plan.casters = {{{0, 0, static_cast<float>(-distance)}, 0.3f}, {{0, 0, static_cast<float>(-distance)}, 0.3f}};
+  plan.lamp_paths = {{1000, 1, 1}};
+  constexpr uint32_t kPaths = 4096;
+  PathBuffer buffer(kPaths);
+  PathState& s = buffer.state();
+  s.batch = {.first_path = 0, .paths = kPaths};
+  s.step = {.epoch = light_path_epoch(0, 0, 0), .from_light = true};
+  emit(plan, s, {0, kPaths});
+  double cover = 0;
+  for (uint32_t i = 0; i < kPaths; ++i) {
+    // beta = throughput (1) cosine (about 1, straight below) and the angle of both cones over the cover.
+    const double sine2 = 0.09 / (distance * distance), height = sine2 / (1 + std::sqrt(1 - sine2));
+    cover += 2 * 2 * 3.14159265358979 * height / double(std::max({s.beta_r[i], s.beta_g[i], s.beta_b[i]})) / kPaths;
+  }
+  return cover;
+}
+
 // Of all its lights, so many times as each sends out in a pass.
 uint64_t paths_of_pass(const Plan& plan) {
   uint64_t paths = 0;
@@ -100,6 +123,16 @@ TEST_CASE("light paths: a path changes hands as it should") {
   CHECK(after(kByLightPaths, true, 2) == kByItselfYet);
   CHECK(after(kByItself, true, 1) == kByItself);  // seen in a mirror
   CHECK(after(kByItself, false, 1) == kByItself);
+}
+
+TEST_CASE("light paths: directions in two cones count half, however far the casters are") {
+  for (const double distance : {10.0, 100.0, 1000.0, 10000.0}) {
+    CAPTURE(distance);
+    test::for_each_target([&](const char* target) {
+      CAPTURE(target);
+      CHECK(mean_cover(distance) == doctest::Approx(2).epsilon(0.2 / distance + 0.02));
+    });
+  }
 }
 
 TEST_CASE("light paths: none where they cannot be, or do not pay") {
@@ -185,7 +218,7 @@ TEST_CASE("light paths: no two share their numbers, up to the last sample") {
     for (const LightPiece& piece : pieces) {
       paths += piece.count;
       // All of it has the epoch's upper digits.
-      CHECK(piece.first >> 48 == (piece.first + piece.count - 1) >> 48);
+      CHECK((piece.first >> 48) == ((piece.first + piece.count - 1) >> 48));
       for (const LightPiece& other : far) {
         const bool same = other.light == piece.light && other.epoch == piece.epoch;
         CHECK((!same || piece.first >= other.first + other.count));

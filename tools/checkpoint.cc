@@ -23,11 +23,17 @@ std::pair<uint64_t, uint64_t> samples_of(const SavedRender& state, const Setting
   return {least, most};
 }
 
-// The samples that every pixel has; none if some have more than others, or if they are in two halves.
+// The samples that every pixel has; none if some have more than others, if light paths have more, or if they are in two halves.
 std::vector<SampleRange> ranges_of(const SavedRender& state, const Settings& settings) {
   if (settings.adaptive_batch > 0 || !state.has_film("picture")) return {};
   const auto [least, most] = samples_of(state, settings);
   if (least != most || most == 0) return {};
+  bool even = true;
+  if (state.has_film("light")) {
+    state.get<uint64_t>("light.samples", settings.width,
+                        [&, all = most](size_t, uint64_t n) { even = even && n == all; });
+  }
+  if (!even) return {};
   return {{settings.first_sample, settings.first_sample + most}};
 }
 

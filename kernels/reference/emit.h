@@ -22,7 +22,9 @@ struct Cone {
     axis = to / std::sqrt(distance2);
     height = sine2 < 1 ? sine2 / (1 + std::sqrt(1 - sine2)) : T(2);
   }
-  bool contains(const Vec3<T>& direction) const { return glm::dot(direction, axis) >= 1 - height; }
+  bool contains(const Vec3<T>& direction) const {
+    return height == 2 || glm::dot(direction - axis, direction - axis) <= 2 * height;
+  }
 };
 
 // p.pixel, p.sample and p.slot say which path; the kernel takes them from the batch.
