@@ -54,7 +54,7 @@ void emit(const Plan& plan, Path<T>& p) {
   frame(cone.axis, b1, b2);
   const Vec3<T> d = to_world(Vec3<T>(sine * std::cos(phi), sine * std::sin(phi), 1 - height), b1, b2, cone.axis);
   T cover = 0;
-  for (size_t k = 0; k < cones.size(); ++k) cover += k == chosen || cones[k].contains(d) ? 1 : 0;
+  for (size_t k = 0; k < cones.size(); ++k) cover += k == chosen || cones[k].contains(d) ? T(1) : T(0);
 
   const float brightest = std::max({light.radiance[0], light.radiance[1], light.radiance[2]});
   const T angle = 2 * std::numbers::pi_v<T> * total / cover, cosine = std::max(glm::dot(d, at.n), T(0));
