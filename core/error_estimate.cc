@@ -154,9 +154,9 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
 
   // The ratio of what squared differences say to what variances say (Cochran, Sampling Techniques, 1977, ch. 6): bright paths
   // that chance has dealt to the probes are in both. Fireflies are left out, whose ratio is 1.
-  std::vector<std::array<double, 2>> terms;  // of each probe: by difference, by variance
-  double by_difference = 0, by_variance = 0;
+  std::vector<std::array<double, 2>> terms;  // of each square of probes: by difference, by variance
   for (size_t k = 0; k < probes.pixels().size(); ++k) {
+    if (!probes.continues(k)) terms.emplace_back();
     const size_t i = probes.place(k);
     const PixelMean &first = picture.pixels[i], second = probes.second(k);
     const auto [x, y] = place(i);
@@ -164,17 +164,16 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
     const double v = double{first.variance} + second.variance;
     std::array<double, 3> difference2{};
     for (size_t c = 0; c < 3; ++c) difference2[c] = std::pow(double{first.rgb[c]} - second.rgb[c], 2);
-    std::array<double, 2> term{};
+    std::array<double, 2>& term = terms.back();
     for (const PixelMean& one : {first, second}) {
       const PixelMean centre = light ? sum_of(one, light->pixels[i]) : one;
       const std::array<double, 3> truth = likely_value(whole, x, y, centre);
       term[0] += relative(difference2, truth);
       term[1] += relative({v, v, v}, truth);
     }
-    terms.push_back(term);
-    by_difference += term[0];
-    by_variance += term[1];
   }
+  double by_difference = 0, by_variance = 0;
+  for (const auto& [d, v] : terms) by_difference += d, by_variance += v;
   double factor = 1, variance = 0;
   if (by_variance > 0 && by_difference > 0) {
     const double n = static_cast<double>(terms.size());

@@ -5,6 +5,7 @@
 #include "core/explain_topics.h"
 #include "core/film.h"
 #include "core/path_buffer.h"
+#include "core/path_reuse.h"
 #include "core/plan_light_paths.h"
 #include "core/stats.h"
 
@@ -70,6 +71,12 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
   return memory.sum() / 2;
 }
 
+// Of a thread.
+size_t bytes_of_paths(const Plan& plan) {
+  const uint32_t wave = plan.settings.wave;
+  return 3 * PathBuffer::bytes(wave) + (reuses_paths(plan) ? KeptBuffer::bytes(wave) : 0);
+}
+
 }  // namespace
 
 MemoryNeed memory_need(const Plan& plan, bool saved) {
@@ -89,7 +96,7 @@ MemoryNeed memory_need(const Plan& plan, bool saved) {
   const size_t means = settings.estimate_error ? mean : 0;
   return {.scene = add_scene(plan, ignored),
           .film = drawn * pixels + picture * shown,
-          .paths = thread_count(settings) * 3 * PathBuffer::bytes(settings.wave),
+          .paths = thread_count(settings) * bytes_of_paths(plan),
           .files = std::max(means, kEncoded + (saved ? 4 * drawn : 0)) * shown};
 }
 
@@ -112,7 +119,8 @@ void explain_memory(const Plan& plan, std::vector<Decision>& out) {
              need.film, "per_pixel", pixels);
   memory.add("paths", count_of(threads, "thread"),
              "three buffers of " + std::to_string(settings.wave) +
-                 " paths: two that the sort moves between, one for those that met a light",
+                 " paths: two that the sort moves between, one for those that met a light" +
+                 (reuses_paths(plan) ? "; and what is kept of two vertices" : ""),
              need.paths, "per_thread", threads);
   memory.add("files", "while they are written", "a checkpoint's takes four times the film beside it", need.files);
   memory.add("all", "scene, film, paths, files", "without stacks, the program, and the loader's peak", need.all());

@@ -5,6 +5,7 @@
 
 #include "core/explain_topics.h"
 #include "core/plan_connections.h"
+#include "core/path_reuse.h"
 #include "core/plan_light_paths.h"
 #include "kernels/kernels.h"
 
@@ -159,6 +160,11 @@ std::string why_so(const Plan& plan, Stage stage) {
       return "";
     case Stage::kTakeLamps:
       return "paths leave caustics to light paths";
+    case Stage::kKeepFirst:
+      return "of diffuse surfaces with normals of their own";
+    case Stage::kConnectPaths:
+      return "light between diffuse surfaces goes to all " + std::to_string(kPathsTogether) +
+             " pixels of a square that see where it comes from";
     case Stage::kEmit:
       return light_paths_text(plan);
     case Stage::kAdjoint:
@@ -190,6 +196,7 @@ std::string why_left_out(const Plan& plan, Stage stage) {
     case Stage::kSampleEnvironment:
       return why_no_environment_samples(plan);
     case Stage::kOcclude:
+      if (reuses_paths(plan)) return "";
       if (hemisphere) return "--direct hemisphere";
       return why_no_light_samples(plan);
     case Stage::kSampleHemisphere:
@@ -224,6 +231,11 @@ std::string why_left_out(const Plan& plan, Stage stage) {
     case Stage::kAdjoint:
       if (*why_no_light_paths(plan) == '\0' && plan.prim_normals.empty()) return "flat faces alone";
       return why_no_light_paths(plan);
+    case Stage::kKeepFirst:
+    case Stage::kKeepSecond:
+    case Stage::kConnectPaths:
+    case Stage::kSharePaths:
+      return why_no_reuse(plan);
     case Stage::kTakeLamps:
     case Stage::kEmit:
     case Stage::kConnectCamera:

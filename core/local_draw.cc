@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/path_reuse.h"
+
 namespace lanewise {
 namespace {
 
@@ -37,8 +39,16 @@ Drawn LocalDraw::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint3
   Wave& wave = this->wave(worker);
   const Profile& profile = wave.profiler().profile;
   const Drawn before{profile.rays(), profile.invalid_samples};
-  run_batches(wave, {.pixels = pixels.data(), .slots = slots, .samples = count, .first_sample = first}, pixels.size(),
-              sums);
+  Batch batch{.pixels = pixels.data(), .slots = slots, .samples = count, .first_sample = first};
+  if (reuses_paths(plan_)) {
+    const PixelSquares squares = squares_of(pixels, slots, plan_.settings.width, plan_.settings.height);
+    batch.pixels = squares.pixels.data();
+    batch.slots = squares.slots.data();
+    batch.group = kPathsTogether;
+    run_batches(wave, batch, squares.pixels.size(), sums);
+  } else {
+    run_batches(wave, batch, pixels.size(), sums);
+  }
   return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
 }
 

@@ -45,6 +45,26 @@ PathBuffer::PathBuffer(uint32_t capacity) : capacity_(round_up_to_lanes(capacity
   for (uint32_t i = 0; i < padded_; ++i) store_path(state_, i, dummy);
 }
 
+size_t KeptBuffer::bytes(uint32_t capacity) {
+  return capacity == 0 ? 0 : sizeof(float) * kKeptFields * (round_up_to_lanes(capacity) + kStagger);
+}
+
+KeptBuffer::KeptBuffer(uint32_t capacity) : stride_(round_up_to_lanes(capacity) + kStagger) {
+  if (capacity == 0) return;
+  memory_.assign(bytes(capacity) / sizeof(float), 0.0f);
+  float* next = memory_.data();
+#define LANEWISE_PLACE(name, meaning) \
+  vertices_.name = next;              \
+  next += stride_;
+  LANEWISE_KEPT_FIELDS(LANEWISE_PLACE)
+#undef LANEWISE_PLACE
+}
+
+void KeptBuffer::clear() {
+  if (memory_.empty()) return;
+  for (float* flags : {vertices_.n_x, vertices_.n_y, vertices_.n_z, vertices_.gain}) std::fill_n(flags, stride_, 0.0f);
+}
+
 PathQueue::PathQueue(const PathState& wave) : buffer_(wave.capacity) {
   buffer_.state().result_r = wave.result_r;
   buffer_.state().result_g = wave.result_g;

@@ -27,6 +27,24 @@ class PathBuffer {
   PathState state_;
 };
 
+// Owns the arrays of KeptVertices.
+class KeptBuffer {
+ public:
+  // For slots up to `capacity`; 0: none.
+  explicit KeptBuffer(uint32_t capacity);
+
+  static size_t bytes(uint32_t capacity);
+
+  KeptVertices& vertices() { return vertices_; }
+  // Nothing has been kept.
+  void clear();
+
+ private:
+  uint32_t stride_ = 0;
+  AlignedVector<float> memory_;
+  KeptVertices vertices_;
+};
+
 // Paths set aside from a wave, bounce after bounce, until a kernel runs over them all: what are a few paths a bounce fill
 // whole vectors then.
 class PathQueue {

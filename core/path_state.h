@@ -87,17 +87,56 @@ struct Step {
   bool from_light = false;    // these are light paths
   bool diffuse = false;       // take_lamps: at diffuse surfaces
   bool leaving = false;       // take_lamps, adjoint: d leaves the vertex
+  uint32_t partner = 0;       // connect_paths: slot i's path with the first vertex of slot i ^ partner's
 };
 
-// The samples that a wave computes: its path i is sample first_sample + j % samples of pixel pixels[j / samples], with
-// j = first_path + i. A pixel's samples are thus consecutive, whatever the wave's size.
+// In a list of pixels: none.
+constexpr uint32_t kNoPixel = 0xffffffff;
+
+// The samples that a wave computes: those with the same number of so many pixels in turn, the group, are neighbours. Its path i is
+// sample first_sample + j / group % samples of pixel pixels[j / (samples group) group + j % group], with j = first_path + i.
 struct Batch {
-  const uint32_t* pixels = nullptr;
-  const uint32_t* slots = nullptr;  // pixel j's sums are film[slots[j]]; null: film[pixels[j]]
-  uint32_t samples = 0;             // per pixel, > 0
+  const uint32_t* pixels = nullptr;  // whole groups; kNoPixel: the group is smaller
+  const uint32_t* slots = nullptr;   // pixel j's sums are film[slots[j]], kNoPixel: nobody's; null: film[pixels[j]]
+  uint32_t group = 1;                // 1 or kPathsTogether; first_path and paths are multiples of it
+  uint32_t samples = 0;              // per pixel, > 0
   uint64_t first_sample = 0;        // the samples do not reach over a multiple of 2^32
   uint64_t first_path = 0;
   uint32_t paths = 0;  // at most the wave's size
+};
+
+// Of paths that are used again (core/path_reuse.h): what is kept of their first two vertices, by slot, capacity + kLanes elements
+// each; null where none are. Slots that hold a path without such a vertex have n = 0, or gain = 0.
+//   X(name, meaning)
+#define LANEWISE_KEPT_FIELDS(X)                                                 \
+  X(x_x, "first vertex: ray origin, offset off the surface")                    \
+  X(x_y, "")                                                                    \
+  X(x_z, "")                                                                    \
+  X(n_x, "its unit normal, on the side of x")                                   \
+  X(n_y, "")                                                                    \
+  X(n_z, "")                                                                    \
+  X(f_r, "throughput behind it")                                                \
+  X(f_g, "")                                                                    \
+  X(f_b, "")                                                                    \
+  X(y_x, "second vertex: point offset off the surface, on the side of x")       \
+  X(y_y, "")                                                                    \
+  X(y_z, "")                                                                    \
+  X(m_x, "its unit normal, on the side of y")                                   \
+  X(m_y, "")                                                                    \
+  X(m_z, "")                                                                    \
+  X(L_r, "radiance that the path gathered before it")                           \
+  X(L_g, "")                                                                    \
+  X(L_b, "")                                                                    \
+  X(gain, "makes radiance at y, towards x, of what it has gathered since then")
+
+#define LANEWISE_COUNT(name, meaning) +1
+constexpr uint32_t kKeptFields = 0 LANEWISE_KEPT_FIELDS(LANEWISE_COUNT);
+#undef LANEWISE_COUNT
+
+struct KeptVertices {
+#define LANEWISE_POINTER(name, meaning) float* name = nullptr;
+  LANEWISE_KEPT_FIELDS(LANEWISE_POINTER)
+#undef LANEWISE_POINTER
 };
 
 // SoA view of a wave's paths: one 64-byte aligned array a field, of capacity + 2 * kLanes * kBinCount elements at
@@ -116,6 +155,8 @@ struct PathState {
   float* result_r = nullptr;
   float* result_g = nullptr;
   float* result_b = nullptr;
+
+  KeptVertices kept;
 };
 
 // A field's type in Path<T>: floats become T, integers stay.

@@ -8,19 +8,30 @@
 
 namespace lanewise {
 
-Probes::Probes(const Settings& settings, bool on)
-    : width_(settings.width), window_(settings.window()), first_sample_(settings.first_sample) {
+Probes::Probes(const Settings& settings, bool on, uint32_t side)
+    : width_(settings.width), side_(side), window_(settings.window()), first_sample_(settings.first_sample) {
   if (!on) return;
-  const uint64_t pixels = uint64_t{window_.width} * window_.height;
+  const uint64_t squares = uint64_t{window_.width} * window_.height / (side * side);
   // A rank-1 lattice x + g y = 0 mod n, n a power of two, with g near n / golden ratio^2: no two probes are near each other.
-  const uint32_t n = std::bit_floor(static_cast<uint32_t>(std::clamp<uint64_t>(pixels / kWanted, 1, kMostSpacing)));
+  const uint32_t n = std::bit_floor(static_cast<uint32_t>(std::clamp<uint64_t>(squares / kWanted, 1, kMostSpacing)));
   const uint32_t g = (3 * n + 4) / 8;
-  for (uint32_t y = window_.y; y < window_.y + window_.height; ++y) {
-    for (uint32_t x = window_.x; x < window_.x + window_.width; ++x) {
-      if ((x + g * y) % n == 0) pixels_.push_back(y * settings.width + x);
+  const uint32_t x_end = window_.x + window_.width, y_end = window_.y + window_.height;
+  for (uint32_t row = window_.y / side; row * side < y_end; ++row) {
+    for (uint32_t column = window_.x / side; column * side < x_end; ++column) {
+      if ((column + g * row) % n != 0) continue;
+      for (uint32_t y = std::max(row * side, window_.y); y < std::min((row + 1) * side, y_end); ++y) {
+        for (uint32_t x = std::max(column * side, window_.x); x < std::min((column + 1) * side, x_end); ++x) {
+          pixels_.push_back(y * settings.width + x);
+        }
+      }
     }
   }
   sums_.resize(pixels_.size());
+}
+
+bool Probes::continues(size_t probe) const {
+  const auto square = [this](uint32_t pixel) { return std::pair(pixel % width_ / side_, pixel / width_ / side_); };
+  return probe > 0 && square(pixels_[probe]) == square(pixels_[probe - 1]);
 }
 
 size_t Probes::place(size_t probe) const {

@@ -16,11 +16,13 @@ class Probes {
   static constexpr uint32_t kMostSpacing = 32;  // one pixel in so many is a probe,
   static constexpr uint32_t kWanted = 256;      // or more where a picture would have fewer probes than this
 
-  // No probes if `on` is false.
-  Probes(const Settings& settings, bool on);
+  // No probes if `on` is false. side: of the squares of pixels that are drawn together, and are probes together.
+  Probes(const Settings& settings, bool on, uint32_t side = 1);
 
-  // y * width + x of the whole picture: a lattice over the window, in rising order.
+  // y * width + x of the whole picture: a lattice of squares over the window, square after square.
   const std::vector<uint32_t>& pixels() const { return pixels_; }
+  // Whether it is of the same square as the probe before.
+  bool continues(size_t probe) const;
 
   // Samples behind all second estimates, and the number of the next one.
   uint64_t samples() const { return samples_; }
@@ -40,6 +42,7 @@ class Probes {
 
  private:
   uint32_t width_;
+  uint32_t side_;
   Window window_;
   std::vector<uint32_t> pixels_;
   std::vector<PixelSums> sums_;

@@ -1,9 +1,11 @@
 // The scalar path tracer: one path at a time through the twins, no waves, no sort, no vectors. Obviously correct rather
 // than fast; in float it is what the SIMD renderer must reproduce, in double the oracle of its accuracy.
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numeric>
 
+#include "core/path_reuse.h"
 #include "core/plan_connections.h"
 #include "core/plan_light_paths.h"
 #include "core/render.h"
@@ -18,6 +20,7 @@
 #include "kernels/reference/gather_emission.h"
 #include "kernels/reference/generate.h"
 #include "kernels/reference/intersect.h"
+#include "kernels/reference/keep_vertices.h"
 #include "kernels/reference/occlude.h"
 #include "kernels/reference/roulette.h"
 #include "kernels/reference/sample_environment.h"
@@ -28,6 +31,7 @@
 #include "kernels/reference/shade_microfacet.h"
 #include "kernels/reference/shade_mirror.h"
 #include "kernels/reference/shade_rough_glass.h"
+#include "kernels/reference/share_paths.h"
 #include "kernels/reference/surface.h"
 #include "kernels/reference/take_lamps.h"
 #include "kernels/reference/texture.h"
@@ -107,9 +111,9 @@ void take_lamps(const Plan& plan, Path<T>& p, bool leaving) {
   if (has_light_paths(plan)) reference::take_lamps(plan, p);
 }
 
-// Follows the path of (p.pixel, p.sample) to its end; its radiance is left in L.
+// Follows the path of (p.pixel, p.sample) to its end; its radiance is left in L. kept: null if paths are not used again.
 template <class T>
-void trace(const Plan& plan, Path<T>& p, Profile& profile) {
+void trace(const Plan& plan, Path<T>& p, Profile& profile, reference::KeptPath<T>* kept) {
   reference::generate(plan, p);
   ++profile.samples;
   for (uint32_t bounce = 0;; ++bounce) {
@@ -124,8 +128,10 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile) {
     reference::surface(plan, p);
     if (!plan.textures.empty() && p.bin == kDiffuse) reference::texture(plan, p);
     take_lamps(plan, p, false);
+    if (kept && bounce == 1 && p.bin == kDiffuse) reference::keep_second(p, *kept);
     add_direct_light(plan, p, profile);
     shade(plan, p);
+    if (kept && bounce == 0 && p.bin == kDiffuse) reference::keep_first(p, *kept);
     if (!plan.prim_normals.empty()) take_lamps(plan, p, true);
     reference::roulette(plan, p);
     if (p.beta_r == 0 && p.beta_g == 0 && p.beta_b == 0) return profile.count_paths(bounce + 1, 1);
@@ -170,24 +176,48 @@ void trace_light_path(const Plan& plan, Path<T>& p, Profile& profile, const See&
 
 // NaN, infinite and negative samples count as black, as in accumulate.
 template <class T>
-bool is_valid(const Path<T>& p) {
+bool is_valid(const reference::Vec3<T>& L) {
   const auto valid = [](T x) { return x >= 0 && std::isfinite(x); };
-  return valid(p.L_r) && valid(p.L_g) && valid(p.L_b);
+  return valid(L.x) && valid(L.y) && valid(L.z);
 }
 
-// Adds one sample to the pixel's sums.
 template <class T>
-void sample_pixel(const Plan& plan, uint32_t pixel, uint64_t sample, PixelSums& sums, Profile& profile) {
+reference::Vec3<T> sample_pixel(const Plan& plan, uint32_t pixel, uint64_t sample, Profile& profile,
+                                reference::KeptPath<T>* kept) {
   Path<T> p;
   p.pixel = pixel;
   p.sample = static_cast<uint32_t>(sample);
   p.step.epoch = epoch_of(sample);
-  trace(plan, p, profile);
-  if (is_valid(p)) {
-    sums.add(p.L_r, p.L_g, p.L_b);
+  trace(plan, p, profile, kept);
+  return LANEWISE_RGB(p, L);
+}
+
+template <class T>
+void add_sample(const reference::Vec3<T>& L, PixelSums& sums, Profile& profile) {
+  if (is_valid(L)) {
+    sums.add(L.x, L.y, L.z);
   } else {
     sums.add(0, 0, 0);
     ++profile.invalid_samples;
+  }
+}
+
+// One sample of each pixel of a square; film: as Batch has the slots.
+template <class T>
+void sample_square(const Plan& plan, const uint32_t* pixels, const uint32_t* slots, uint64_t sample, PixelSums* film,
+                   Profile& profile) {
+  reference::Square<T> kept;
+  std::array<reference::Vec3<T>, kPathsTogether> results{};
+  for (uint32_t i = 0; i < kPathsTogether; ++i) {
+    if (pixels[i] != kNoPixel) results[i] = sample_pixel(plan, pixels[i], sample, profile, &kept[i]);
+  }
+  const auto sees = [&](uint32_t i, const reference::Vec3<T>& l) {
+    ++profile.shadow_rays;
+    return !reference::any_hit(plan, LANEWISE_VEC3(kept[i], x), l);
+  };
+  reference::share_paths(kept, results, sees);
+  for (uint32_t i = 0; i < kPathsTogether; ++i) {
+    if (slots[i] != kNoPixel) add_sample(results[i], film[slots[i]], profile);
   }
 }
 
@@ -205,8 +235,9 @@ class LightPaths : public LightPathDraw {
     const uint64_t before = profile.rays();
     std::vector<Splat> splats;
     const auto see = [&](const Path<T>& p) {
-      if (!is_valid(p)) ++profile.invalid_samples;
-      if (!is_valid(p) || (p.L_r == 0 && p.L_g == 0 && p.L_b == 0)) return;
+      const bool valid = is_valid(LANEWISE_RGB(p, L));
+      if (!valid) ++profile.invalid_samples;
+      if (!valid || (p.L_r == 0 && p.L_g == 0 && p.L_b == 0)) return;
       splats.push_back({p.raster, static_cast<float>(p.L_r), static_cast<float>(p.L_g), static_cast<float>(p.L_b)});
     };
     for (uint32_t i = 0; i < piece.count; ++i) {
@@ -237,8 +268,19 @@ RenderResult render_reference(const Plan& plan, const RenderControl& control) {
                         uint32_t worker) {
     Profile& profile = profiles[worker];
     const uint64_t before = profile.rays();
+    if (reuses_paths(plan)) {
+      const PixelSquares squares = squares_of(pixels, nullptr, plan.settings.width, plan.settings.height);
+      for (size_t j = 0; j < squares.pixels.size(); j += kPathsTogether) {
+        for (uint64_t i = first; i < first + count; ++i) {
+          sample_square<T>(plan, &squares.pixels[j], &squares.slots[j], i, sums, profile);
+        }
+      }
+      return profile.rays() - before;
+    }
     for (const uint32_t pixel : pixels) {
-      for (uint32_t i = 0; i < count; ++i) sample_pixel<T>(plan, pixel, first + i, sums[pixel], profile);
+      for (uint64_t i = first; i < first + count; ++i) {
+        add_sample(sample_pixel<T>(plan, pixel, i, profile, nullptr), sums[pixel], profile);
+      }
     }
     return profile.rays() - before;
   };
@@ -247,7 +289,8 @@ RenderResult render_reference(const Plan& plan, const RenderControl& control) {
                            [](uint64_t sum, const Profile& p) { return sum + p.invalid_samples; });
   });
   LightPaths<T> light(plan, profiles);
-  Exposure exposure = expose(plan.settings, threads, draw, counting, has_light_paths(plan) ? &light : nullptr);
+  Exposure exposure = expose(plan.settings, threads, draw, counting, has_light_paths(plan) ? &light : nullptr,
+                             reuses_paths(plan) ? kTogetherSide : 1);
 
   return make_result(std::move(exposure), profiles, control.resume, std::chrono::steady_clock::now() - start);
 }

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "core/local_draw.h"
+#include "core/path_reuse.h"
 #include "core/remote_ranks.h"
 #include "core/schedule.h"
 #include "core/stats.h"
@@ -59,7 +60,8 @@ RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetai
   LightPaths light(plan, local, control.remote, invalid);
   const RenderControl counting = count_invalid(control, [&] { return invalid.load(); });
   const uint32_t workers = threads + (control.remote ? control.remote->workers() : 0);
-  Exposure exposure = expose(plan.settings, workers, draw, counting, has_light_paths(plan) ? &light : nullptr);
+  Exposure exposure = expose(plan.settings, workers, draw, counting, has_light_paths(plan) ? &light : nullptr,
+                             reuses_paths(plan) ? kTogetherSide : 1);
 
   const auto elapsed = std::chrono::steady_clock::now() - start;
   std::vector<Profile> profiles = local.profiles();

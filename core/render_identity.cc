@@ -90,6 +90,7 @@ RenderIdentity render_identity(const Scene& scene, const Settings& s, const std:
           {"only-bounce", s.only_bounce ? std::to_string(*s.only_bounce) : "none"},
           {"direct", choice(s.direct)},
           {"light-paths", choice(s.light_paths)},
+          {"reuse", choice(s.reuse)},
           {"connect", choice(s.connect)},
           {"bsdf-sampling", choice(s.bsdf_sampling)},
           {"fresnel", choice(s.fresnel)},

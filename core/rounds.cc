@@ -19,7 +19,7 @@ namespace {
 class Rounds {
  public:
   Rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
-         LightPathDraw* light)
+         LightPathDraw* light, uint32_t side)
       : settings_(settings),
         workers_(workers),
         draw_(draw),
@@ -27,7 +27,8 @@ class Rounds {
         intervals_(control),
         film_(size_t{settings.width} * settings.height),
         light_(light),
-        probes_(settings, settings.estimate_error) {
+        side_(side),
+        probes_(settings, settings.estimate_error, side) {
     if (light_) light_film_.emplace(film_.sums.size());
     if (!control.resume) return;
     control.resume->get_picture(settings, film_);
@@ -155,7 +156,9 @@ class Rounds {
   void draw_some_probes() {
     constexpr uint32_t kWaves = 4;  // enough that waves are full
     const uint32_t count = short_of(done_ - probes_.samples());
-    const size_t all = probes_.pixels().size(), portion = std::max(1u, kWaves * settings_.wave / count);
+    const uint32_t square = side_ * side_;
+    const size_t all = probes_.pixels().size();
+    const size_t portion = square * std::max(1u, kWaves * settings_.wave / (count * square));
     std::atomic<uint64_t> rays{0};
     run_workers(
         workers_, (all + portion - 1) / portion,
@@ -222,6 +225,7 @@ class Rounds {
   Film film_;
   LightPathDraw* light_;
   std::optional<LightFilm> light_film_;
+  uint32_t side_;  // of squares of pixels
   Probes probes_;
   std::optional<ErrorEstimate> error_;
 };
@@ -234,8 +238,8 @@ uint32_t timed_round(uint64_t done, uint64_t most, double fits) {
 }
 
 Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
-                          LightPathDraw* light) {
-  return Rounds(settings, workers, draw, control, light).expose();
+                          LightPathDraw* light, uint32_t side) {
+  return Rounds(settings, workers, draw, control, light, side).expose();
 }
 
 }  // namespace lanewise

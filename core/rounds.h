@@ -15,6 +15,6 @@ namespace lanewise {
 uint32_t timed_round(uint64_t done, uint64_t most, double fits);
 
 Exposure expose_in_rounds(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
-                          LightPathDraw* light);
+                          LightPathDraw* light, uint32_t side);
 
 }  // namespace lanewise

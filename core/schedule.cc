@@ -216,10 +216,10 @@ double steady_seconds() {
 }
 
 Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control,
-                LightPathDraw* light) {
+                LightPathDraw* light, uint32_t side) {
   if (settings.noise > 0) return ToNoise(settings, workers, draw, control).expose();
   if (settings.adaptive_batch > 0) return Adaptive(settings, draw, control).expose(workers);
-  return expose_in_rounds(settings, workers, draw, control, light);
+  return expose_in_rounds(settings, workers, draw, control, light, side);
 }
 
 }  // namespace lanewise

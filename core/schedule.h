@@ -10,8 +10,9 @@
 
 namespace lanewise {
 
-// workers: how many threads may draw at a time. light: null if there are no light paths.
+// workers: how many threads may draw at a time. light: null if there are no light paths. side: of the squares of pixels that hang
+// together.
 Exposure expose(const Settings& settings, uint32_t workers, const Draw& draw, const RenderControl& control = {},
-                LightPathDraw* light = nullptr);
+                LightPathDraw* light = nullptr, uint32_t side = 1);
 
 }  // namespace lanewise

@@ -51,6 +51,7 @@ struct Settings {
   bool autofocus = false;     // focal_distance becomes that of what is at the picture's centre
   Direct direct = Direct::kMis;
   bool light_paths = true;  // where they pay: see core/plan_light_paths.h
+  bool reuse = true;        // paths of neighbouring pixels: see core/path_reuse.h
   bool connect = true;      // connections by way of mirror and glass spheres: see core/plan_connections.h
   BsdfSampling bsdf_sampling = BsdfSampling::kVndf;
   Fresnel fresnel = Fresnel::kExact;

@@ -35,6 +35,10 @@ namespace lanewise {
   X(kShadeGlass, shade_glass)               \
   X(kRoulette, roulette)                    \
   X(kTakeLamps, take_lamps)                 \
+  X(kKeepFirst, keep_first)                 \
+  X(kKeepSecond, keep_second)               \
+  X(kConnectPaths, connect_paths)           \
+  X(kSharePaths, share_paths)               \
   X(kEmit, emit)                            \
   X(kAdjoint, adjoint)                      \
   X(kConnectCamera, connect_camera)         \

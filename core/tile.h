@@ -16,7 +16,7 @@ struct Tile {
   std::vector<uint32_t> pixels;  // y * width + x
 };
 
-// Cuts the window into squares of a side that gives a tile's samples, so many a pixel, a full wave, if the picture is large
+// Cuts the window, along multiples of the side, so that no square of core/path_reuse.h is cut, into squares of a side that gives a tile's samples, so many a pixel, a full wave, if the picture is large
 // enough for that to leave every thread work to the end.
 inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples) {
   constexpr uint32_t kMinSide = 16, kMaxSide = 64;
@@ -25,11 +25,12 @@ inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples) 
   const Window window = settings.window();
   const uint32_t x_end = window.x + window.width, y_end = window.y + window.height;
   std::vector<Tile> tiles;
-  for (uint32_t y0 = window.y; y0 < y_end; y0 += side) {
-    for (uint32_t x0 = window.x; x0 < x_end; x0 += side) {
+  const auto next = [side](uint32_t at, uint32_t end) { return std::min((at / side + 1) * side, end); };
+  for (uint32_t y0 = window.y; y0 < y_end; y0 = next(y0, y_end)) {
+    for (uint32_t x0 = window.x; x0 < x_end; x0 = next(x0, x_end)) {
       Tile& tile = tiles.emplace_back();
-      for (uint32_t y = y0; y < std::min(y0 + side, y_end); ++y) {
-        for (uint32_t x = x0; x < std::min(x0 + side, x_end); ++x) tile.pixels.push_back(y * settings.width + x);
+      for (uint32_t y = y0; y < next(y0, y_end); ++y) {
+        for (uint32_t x = x0; x < next(x0, x_end); ++x) tile.pixels.push_back(y * settings.width + x);
       }
     }
   }

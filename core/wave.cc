@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/plan_connections.h"
+#include "core/path_reuse.h"
 #include "core/plan_light_paths.h"
 
 namespace lanewise {
@@ -62,6 +63,14 @@ Kernel* kernel_of(Stage stage) {
       return roulette;
     case Stage::kTakeLamps:
       return take_lamps;
+    case Stage::kKeepFirst:
+      return keep_first;
+    case Stage::kKeepSecond:
+      return keep_second;
+    case Stage::kConnectPaths:
+      return connect_paths;
+    case Stage::kSharePaths:
+      return share_paths;
     case Stage::kEmit:
       return emit;
     case Stage::kAdjoint:
@@ -84,6 +93,7 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   const Step start{.epoch = epoch_of(batch.first_sample)};
   state_.batch = batch;
   state_.step = start;
+  kept_.clear();
   Range live{0, batch.paths};
   uint32_t paths = batch.paths;
   run(Stage::kGenerate, live);
@@ -92,6 +102,7 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     state_.step.bounce = bounce;
     run(Stage::kIntersect, live, paths);
     const Bins bins = sort(live, paths);
+    if (bounce == 0) profile_.samples += bins.paths(0, kBinCount);
     profile_.count_rays(Stage::kIntersect, bounce, bins.paths(0, kBinCount) - bins.dead);
     const bool shown = plan_.settings.shows(bounce);
     if (shown) emitters_.append(state_, bins[kEmitter]);
@@ -105,8 +116,10 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     run(Stage::kSurface, live, paths);
     if (!plan_.textures.empty()) run(Stage::kTexture, bins[kDiffuse]);
     take_lamps(bins);
+    if (bounce == 1 && reuses_) run(Stage::kKeepSecond, bins[kDiffuse]);
     add_direct_light(bins);
     for (const ShadeStages& stages : plan_.shade_stages) run(stages.shade, bins[stages.bin]);
+    if (bounce == 0 && reuses_) run(Stage::kKeepFirst, bins[kDiffuse]);
     leave_lamps(live, paths);
     if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);
   }
@@ -116,9 +129,9 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   const Range met = emitters_.take();
   run(Stage::kEmission, emitters_.state(), met, met.size());
   run(Stage::kRetire, emitters_.state(), met, met.size());
+  if (reuses_) share_paths({0, batch.paths});
 
   const auto call = count(Stage::kAccumulate, {0, batch.paths}, batch.paths);
-  profile_.samples += batch.paths;
   profile_.invalid_samples += accumulate(state_, film);
 }
 
@@ -135,6 +148,18 @@ void Wave::leave_lamps(Range range, uint32_t paths) {
   state_.step.leaving = true;
   run(Stage::kTakeLamps, range, paths);
   state_.step.leaving = false;
+}
+
+// Of what paths have found behind their second vertices, by shadow rays from their partners' first ones. By slot: the paths
+// themselves are done with.
+void Wave::share_paths(Range slots) {
+  for (uint32_t partner = 1; partner < kPathsTogether; ++partner) {
+    state_.step.partner = partner;
+    run(Stage::kConnectPaths, slots);
+    profile_.count_rays(Stage::kOcclude, 0, count_shadow_rays(state_, slots));
+    run(Stage::kOcclude, slots);
+  }
+  run(Stage::kSharePaths, slots);
 }
 
 // Next-event estimation at the vertices whose materials are no delta: every sample of every light in turn, straight and by
@@ -204,10 +229,13 @@ Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
       state_(buffers_[0].state()),
       spare_(buffers_[1].state()),
       emitters_(state_),
+      reuses_(reuses_paths(plan)),
+      kept_(reuses_ ? size : 0),
       profiler_(detail) {
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;
   spare_.result_b = state_.result_b;
+  state_.kept = spare_.kept = kept_.vertices();
   if (!has_light_paths(plan)) spare_.lamps = state_.lamps;
   // Barycentric weights that no normal is mixed with need not survive the sort: it leaves what both states share in its place.
   if (plan.prim_normals.empty()) {

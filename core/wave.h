@@ -37,6 +37,7 @@ class Wave {
   // Notes which paths leave the lamps that come next to light paths.
   void take_lamps(const Bins& bins);
   void leave_lamps(Range range, uint32_t paths);
+  void share_paths(Range slots);
   void add_direct_light(const Bins& bins);
   // One sample of the light of state_.step at the vertices in the rough bins: `aim` makes it, `trace` adds it where it is seen,
   // by as many rays each.
@@ -48,6 +49,8 @@ class Wave {
   PathState state_;     // where the paths are now
   PathState spare_;     // where the next sort moves them
   PathQueue emitters_;  // the paths that have met one, of all bounces
+  bool reuses_;
+  KeptBuffer kept_;
   Profiler profiler_;
   Profile& profile_ = profiler_.profile;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/path_reuse.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/accumulate.cc"
 #include "hwy/foreach_target.h"
@@ -96,44 +98,59 @@ void Cut(const PathState& s, size_t begin, Chunk& chunk) {
   }
 }
 
-template <class Sum>
+// Every kStep-th from begin on.
+template <size_t kStep, class Sum>
 HWY_INLINE void Add(const Parts& parts, size_t begin, size_t end, Sum& sum) {
   uint64_t high = 0, low = 0;
-  for (size_t i = begin; i < end; ++i) {
+  for (size_t i = begin; i < end; i += kStep) {
     high += parts.high[i];
     low += parts.low[i];
   }
-  high -= (end - begin) * kShiftBits;
-  low -= (end - begin) * kShiftBits;
+  const uint64_t samples = (end - begin + kStep - 1) / kStep;
+  high -= samples * kShiftBits;
+  low -= samples * kShiftBits;
   sum += Sum((Uint128{high} << kLowPlaces) + static_cast<Uint128>(static_cast<int64_t>(low)));
+}
+
+// kGroup: the batch's.
+template <size_t kGroup>
+void AddToFilm(const PathState& s, bool bright, PixelSums* film) {
+  const Batch& batch = s.batch;
+  const uint32_t* slots = batch.slots ? batch.slots : batch.pixels;
+  const uint64_t group_paths = uint64_t{batch.samples} * kGroup;
+  uint64_t pixel_index = batch.first_path / group_paths * kGroup;
+  uint64_t left = group_paths - batch.first_path % group_paths;  // of the group's paths
+  Chunk chunk;
+  for (size_t begin = 0; begin < batch.paths; begin += kChunk) {
+    const size_t size = std::min<size_t>(kChunk, batch.paths - begin);
+    if (!bright) Cut(s, begin, chunk);
+    for (size_t first = 0, end = 0; first < size; first = end) {
+      end = std::min<size_t>(size, first + left);
+      left -= end - first;
+      for (size_t i = first; i < first + kGroup; ++i) {
+        const uint32_t slot = slots[pixel_index + i - first];
+        if (kGroup > 1 && slot == kNoPixel) continue;
+        PixelSums& sums = film[slot];
+        if (HWY_LIKELY(!bright)) {
+          Add<kGroup>(chunk.r, i, end, sums.r);
+          Add<kGroup>(chunk.g, i, end, sums.g);
+          Add<kGroup>(chunk.b, i, end, sums.b);
+          Add<kGroup>(chunk.y, i, end, sums.y);
+          Add<kGroup>(chunk.y2, i, end, sums.y2);
+          continue;
+        }
+        for (size_t k = begin + i; k < begin + end; k += kGroup) {
+          sums.add(s.result_r[k], s.result_g[k], s.result_b[k]);
+        }
+      }
+      if (left == 0) pixel_index += kGroup, left = group_paths;
+    }
+  }
 }
 
 uint32_t Accumulate(const PathState& s, PixelSums* film) {
   const Seen seen = BlackenInvalid(s);
-  const Batch& batch = s.batch;
-  const uint32_t* slots = batch.slots ? batch.slots : batch.pixels;
-  uint64_t pixel_index = batch.first_path / batch.samples;
-  uint32_t left = batch.samples - static_cast<uint32_t>(batch.first_path % batch.samples);  // of the pixel's samples
-  Chunk chunk;
-  for (size_t begin = 0; begin < batch.paths; begin += kChunk) {
-    const size_t size = std::min<size_t>(kChunk, batch.paths - begin);
-    if (!seen.bright) Cut(s, begin, chunk);
-    for (size_t i = 0; i < size;) {
-      PixelSums& sums = film[slots[pixel_index]];
-      const size_t end = std::min(size, i + left);
-      left -= static_cast<uint32_t>(end - i);
-      if (HWY_LIKELY(!seen.bright)) {
-        Add(chunk.r, i, end, sums.r);
-        Add(chunk.g, i, end, sums.g);
-        Add(chunk.b, i, end, sums.b);
-        Add(chunk.y, i, end, sums.y);
-        Add(chunk.y2, i, end, sums.y2);
-        i = end;
-      }
-      for (; i < end; ++i) sums.add(s.result_r[begin + i], s.result_g[begin + i], s.result_b[begin + i]);
-      if (left == 0) ++pixel_index, left = batch.samples;
-    }
-  }
+  (s.batch.group == 1 ? AddToFilm<1> : AddToFilm<kPathsTogether>)(s, seen.bright, film);
   return seen.invalid;
 }
 

@@ -10,7 +10,7 @@
 namespace lanewise {
 
 // Names of LANEWISE_PATH_FIELDS with blanks between; "o" stands for o_x o_y o_z, "L" for L_r L_g L_b, and so on; "KEPT" for all
-// KEPT fields. Besides them: "result" (of PathState: r, g, b), and what all paths share: "step", "batch".
+// KEPT fields. Besides them: "result" (of PathState: r, g, b), "kept" (of PathState: all of it), and what all paths share: "step", "batch".
 struct KernelFields {
   std::string_view reads;
   std::string_view writes;
@@ -28,6 +28,7 @@ constexpr bool is_part(std::string_view field, std::string_view name) {
 constexpr uint32_t count_words(std::string_view name) {
   if (name == "step" || name == "batch") return 0;
   if (name == "result") return 3;
+  if (name == "kept") return kKeptFields;
   uint32_t words = 0;
 #define LANEWISE_COUNT_KEPT(type, field, meaning) words += name == "KEPT" || is_part(#field, name);
 #define LANEWISE_COUNT_LOCAL(type, field, meaning) words += is_part(#field, name);

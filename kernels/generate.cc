@@ -17,18 +17,21 @@ namespace HWY_NAMESPACE {
 void Assign(const Plan& plan, const PathState& s, Range range) {
   const Batch& batch = s.batch;
   const uint64_t first = batch.first_path + range.begin;
-  uint64_t pixel_index = first / batch.samples;
-  uint32_t sample = static_cast<uint32_t>(first % batch.samples);
-  for (uint32_t i = range.begin; i < range.end; ++pixel_index, sample = 0) {
-    const uint32_t pixel = batch.pixels[pixel_index];
-    const float x = static_cast<float>(pixel % plan.settings.width);
-    const float y = static_cast<float>(pixel / plan.settings.width);
-    for (; sample < batch.samples && i < range.end; ++sample, ++i) {
-      s.pixel[i] = pixel;
-      s.sample[i] = static_cast<uint32_t>(batch.first_sample + sample);
-      s.slot[i] = i;
-      s.o_x[i] = x;
-      s.o_y[i] = y;
+  const uint32_t group = batch.group;
+  for (uint32_t member = 0; member < group; ++member) {
+    uint64_t pixel_index = first / group / batch.samples * group + member;
+    uint32_t sample = static_cast<uint32_t>(first / group % batch.samples);
+    for (uint32_t i = range.begin + member; i < range.end; pixel_index += group, sample = 0) {
+      const uint32_t pixel = batch.pixels[pixel_index];
+      const float x = static_cast<float>(pixel % plan.settings.width);
+      const float y = static_cast<float>(pixel / plan.settings.width);
+      for (; sample < batch.samples && i < range.end; ++sample, i += group) {
+        s.pixel[i] = pixel;
+        s.sample[i] = static_cast<uint32_t>(batch.first_sample + sample);
+        s.slot[i] = pixel == kNoPixel ? s.capacity : i;
+        s.o_x[i] = x;
+        s.o_y[i] = y;
+      }
     }
   }
   // The last vector's other lanes make camera rays too, but as padding: the first sort drops them.

@@ -1,7 +1,7 @@
 // Table of contents: every kernel, in the order in which data flows through them.
 //
-// A kernel is a pure function of the plan and of its lanes: no lane depends on another, nothing is allocated, read from
-// a file or kept. It may touch slots [range.begin, range.end rounded up to kLanes) and reads and writes only the fields listed
+// A kernel is a pure function of the plan and of its lanes: no lane depends on another (but in sort, connect_paths and
+// share_paths), nothing is allocated, read from a file or kept. It may touch slots [range.begin, range.end rounded up to kLanes) and reads and writes only the fields listed
 // below it (padding lanes hold the harmless dummy path). Each runs the best instruction set that the machine has and hwy allows;
 // its scalar twin of the same name is kernels/reference/<file>.h, a template over float (what the kernel reproduces)
 // and double (the oracle). "p" below is the hit point in o_x, o_y, o_z once `surface` has run. Radiance in W / (m^2
@@ -57,7 +57,7 @@ struct Bins {
 };
 
 // Moves every path to its bin, and drops the padding that the sort before left: stable, bins contiguous, each padded with
-// the dummy path to a multiple of kLanes. The only kernel in which lanes meet. Of what goes to kFinished only slot and L are
+// the dummy path to a multiple of kLanes. Of what goes to kFinished only slot and L are
 // moved: nothing else of it will be read. Nor is an array moved that both states share (u and v, where no normal needs them): it
 // holds anything then.
 // Writes also all fields of the padding.
@@ -70,6 +70,32 @@ void take_lamps(const Plan& plan, const PathState& s, Range range);
 // (step.leaving), that is all.
 constexpr KernelFields kTakeLampsFields = {.reads = "d n s lamps step", .writes = "lamps"};
 constexpr KernelBounds kTakeLampsBounds = {.fields = {exact("lamps")}, .choice = {.margin = 4, .max_share = 2e-4}};
+
+// Where paths are used again (core/path_reuse.h): keeps a path's first vertex, once it has left it, if the surface is shaded by its
+// own normal, and not black: from a black one no path goes on.
+void keep_first(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kKeepFirstFields = {.reads = "slot o d n s beta", .writes = "kept"};
+
+// Of a path with such a first vertex its second one, if that is like it, and L. The path goes on with L = 0 and beta = its largest
+// channel, which roulette sees no difference in.
+void keep_second(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kKeepSecondFields = {.reads = "slot o d n s err beta L kept", .writes = "kept L beta"};
+// All but y and gain to the bit.
+constexpr FieldBound kKeepSecondBound = ulps("kept", 2);
+
+// By slot: aims from the first vertex of slot i ^ step.partner at the second one of slot i; channel partner - 1 of c is the
+// density of y_i there, times pi. The first partner sets L to 0.
+void connect_paths(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kConnectPathsFields = {.reads = "kept step", .writes = "o n err l c L"};
+// Of l; and of the density where both surfaces face each other: at grazing angles its cosines are differences of larger numbers.
+constexpr FieldBound kConnectPathsBound = ulps("l", 8);
+
+// By slot: shares out what each path has found behind its second vertex to the result of its own pixel and of its partners that see
+// it, which L says.
+void share_paths(const Plan& plan, const PathState& s, Range range);
+constexpr KernelFields kSharePathsFields = {.reads = "kept L result", .writes = "result kept l_pdf L c"};
+// Of all that is in the square. At grazing angles a weight may be another, but nothing is lost: the sum is within it.
+constexpr FieldBound kSharePathsBound = ulps("result", 16);
 
 // Starts the light paths batch.first_path and following of lamp step.light: from a point of it, uniform by area, in a direction
 // uniform over the cones in which the plan's casters are seen from there; what lies in several counts by their number.

@@ -174,7 +174,7 @@ TEST_CASE("explain: memory adds up") {
   const Decision* scene = find(decisions, "memory", "scene");
   REQUIRE(scene);
   CHECK(sum(decisions, "memory", "bytes") == 2 * figure(*all, "bytes") + figure(*scene, "bytes"));
-  CHECK(figure(*threads, "bytes") == 3.0 * 3 * static_cast<double>(PathBuffer::bytes(256)));
+  CHECK(figure(*threads, "bytes") == 3.0 * static_cast<double>(3 * PathBuffer::bytes(256) + KeptBuffer::bytes(256)));
   CHECK(figure(*find(decisions, "memory", "film"), "per_pixel") >= sizeof(PixelSums));
   // An array of a field for every slot, at least.
   CHECK(PathBuffer::bytes(256) >= 256 * 4 * 32);

@@ -98,6 +98,8 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
       {{"mis", Direct::kMis}, {"light", Direct::kLight}, {"bsdf", Direct::kBsdf}, {"hemisphere", Direct::kHemisphere}},
       "How direct light is sampled");
   app.add_flag("-H,--hemisphere", o.hemisphere, "Short for --direct hemisphere");
+  add_choice<bool>(app, "--reuse", o.settings.reuse, {{"on", true}, {"off", false}},
+                   "Paths of neighbouring pixels used again, for light between diffuse surfaces");
   add_choice<bool>(app, "--light-paths", o.settings.light_paths, {{"on", true}, {"off", false}},
                    "Caustics and their glow by paths from the lamps");
   add_choice<bool>(app, "--connect", o.settings.connect, {{"on", true}, {"off", false}},
@@ -222,6 +224,7 @@ void choose_model(RenderOptions& o, const CLI::App& app) {
   if (app.count("--bsdf-sampling") == 0) settings.bsdf_sampling = BsdfSampling::kNdf;
   if (app.count("--fresnel") == 0) settings.fresnel = Fresnel::kCourse;
   if (app.count("--connect") == 0) settings.connect = false;
+  if (app.count("--reuse") == 0) settings.reuse = false;
 }
 
 std::string default_output(const std::string& scene, const char* extension) {

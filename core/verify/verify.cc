@@ -6,6 +6,7 @@
 #include "core/path_buffer.h"
 #include "core/verify/kernel_case.h"
 #include "core/verify/plans.h"
+#include "core/verify/squares.h"
 #include "core/verify/whole_wave.h"
 #include "core/workers.h"
 
@@ -64,23 +65,28 @@ Step step_of(const Plan& plan, uint32_t i) {
           .light_sample = i / 2 % plan.settings.light_samples};
 }
 
-struct ExactCase {
+// A kernel that does more than compute a path's fields: how far off it is, in the bound's unit.
+struct WholeCase {
   const char* name;
-  const char* field;
-  uint64_t (*errors)(uint32_t paths, uint32_t seed);
+  FieldBound bound;
+  double (*error)(uint32_t paths, uint32_t seed);
 };
-constexpr ExactCase kExactCases[] = {{"sort", "paths", sort_errors},
-                                     {"retire", "result", retire_errors},
-                                     {"count_shadow_rays", "count", count_shadow_rays_errors},
-                                     {"accumulate", "film", accumulate_errors}};
+constexpr WholeCase kWholeCases[] = {{"sort", exact("paths"), sort_errors},
+                                     {"keep_first", exact("kept"), keep_first_error},
+                                     {"keep_second", kKeepSecondBound, keep_second_error},
+                                     {"connect_paths", kConnectPathsBound, connect_paths_error},
+                                     {"share_paths", kSharePathsBound, share_paths_error},
+                                     {"retire", exact("result"), retire_errors},
+                                     {"count_shadow_rays", exact("count"), count_shadow_rays_errors},
+                                     {"accumulate", exact("film"), accumulate_errors}};
 
-KernelResult run_exact(const ExactCase& c, const std::string& target, const VerifyOptions& options) {
-  const uint64_t wrong = c.errors(options.paths, options.seed);
+KernelResult run_whole(const WholeCase& c, const std::string& target, const VerifyOptions& options) {
+  const double error = c.error(options.paths, options.seed);
   KernelResult result{c.name, target, {}};
   result.tally.paths = options.paths;
-  result.tally.failed = wrong;
-  result.tally.fields.push_back({exact(c.field), static_cast<double>(wrong), static_cast<double>(wrong)});
-  if (wrong > 0) result.tally.first_failure = std::to_string(wrong) + " wrong";
+  result.tally.failed = error > c.bound.max;
+  result.tally.fields.push_back({c.bound, error, error});
+  if (error > c.bound.max) result.tally.first_failure = std::to_string(error) + (c.bound.max > 0 ? " off" : " wrong");
   return result;
 }
 
@@ -117,10 +123,10 @@ std::vector<KernelResult> verify_kernels(const VerifyOptions& options,
     if (progress)
       progress({static_cast<double>(done) / static_cast<double>(kernel_cases().size()), 0, elapsed.count()});
   }
-  for (const ExactCase& c : kExactCases) {
+  for (const WholeCase& c : kWholeCases) {
     for (const std::string& target : options.targets) {
       choose_isa(target);
-      results.push_back(run_exact(c, target, options));
+      results.push_back(run_whole(c, target, options));
     }
   }
   choose_isa(before);

@@ -20,7 +20,7 @@ struct VerifyOptions {
 };
 
 // One kernel on one target. Of those that move, sum or count paths the only field is what they do, and the error is the
-// number of things wrong.
+// number of things wrong; of those by which paths are used again it is that of core/verify/squares.h.
 struct KernelResult {
   const char* name;
   std::string target;

@@ -31,7 +31,7 @@ std::vector<uint32_t> kept_words(const PathState& s, uint32_t i) {
 }  // namespace
 
 // Against a stable sort by hand.
-uint64_t sort_errors(uint32_t paths, uint32_t seed) {
+double sort_errors(uint32_t paths, uint32_t seed) {
   Rng rng(seed);
   const PathBuffer from = buffer_for(paths), to = buffer_for(paths);
   for (uint32_t i = 0; i < paths; ++i) {
@@ -43,7 +43,7 @@ uint64_t sort_errors(uint32_t paths, uint32_t seed) {
     store_path(from.state(), i, p);
   }
   const Bins bins = sort_by_bin(from.state(), to.state(), {0, paths});
-  uint64_t wrong = 0;
+  double wrong = 0;
   for (uint32_t b = 0; b < kBinCount; ++b) {
     uint32_t at = bins[b].begin;
     for (uint32_t i = 0; i < paths; ++i) {
@@ -57,7 +57,7 @@ uint64_t sort_errors(uint32_t paths, uint32_t seed) {
   return wrong;
 }
 
-uint64_t retire_errors(uint32_t paths, uint32_t seed) {
+double retire_errors(uint32_t paths, uint32_t seed) {
   Rng rng(seed);
   const PathBuffer buffer = buffer_for(paths);
   const PathState& s = buffer.state();
@@ -66,7 +66,7 @@ uint64_t retire_errors(uint32_t paths, uint32_t seed) {
     for (float* L : {s.L_r, s.L_g, s.L_b}) L[i] = random_float(rng);
   }
   retire(Plan{}, s, {0, paths});
-  uint64_t wrong = 0;
+  double wrong = 0;
   for (uint32_t i = 0; i < paths; ++i) {
     const uint32_t slot = s.slot[i];
     wrong += s.result_r[slot] != s.L_r[i] || s.result_g[slot] != s.L_g[i] || s.result_b[slot] != s.L_b[i];
@@ -75,7 +75,7 @@ uint64_t retire_errors(uint32_t paths, uint32_t seed) {
 }
 
 // Against sums one sample at a time; one sample in sixteen is no valid one.
-uint64_t accumulate_errors(uint32_t paths, uint32_t seed) {
+double accumulate_errors(uint32_t paths, uint32_t seed) {
   constexpr uint32_t kSamples = 7;
   Rng rng(seed);
   const PathBuffer buffer = buffer_for(paths);
@@ -94,12 +94,12 @@ uint64_t accumulate_errors(uint32_t paths, uint32_t seed) {
     PixelSums& sums = want[order[i / kSamples]];
     valid ? sums.add(s.result_r[i], s.result_g[i], s.result_b[i]) : sums.add(0, 0, 0);
   }
-  uint64_t wrong = accumulate(s, got.data()) != invalid;
+  double wrong = accumulate(s, got.data()) != invalid;
   for (uint32_t i = 0; i < pixels; ++i) wrong += !(got[i] == want[i]);
   return wrong;
 }
 
-uint64_t count_shadow_rays_errors(uint32_t paths, uint32_t seed) {
+double count_shadow_rays_errors(uint32_t paths, uint32_t seed) {
   Rng rng(seed);
   const PathBuffer buffer = buffer_for(paths);
   const PathState& s = buffer.state();

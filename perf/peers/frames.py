@@ -24,7 +24,7 @@ from study import plt  # noqa: E402
 
 WIDTH, HEIGHT, DEPTH, THREADS = 480, 360, 5, 2
 # As the peers: perf/chart.py is for what ours is worth.
-SAME_ESTIMATOR = ['--sampler', 'random', '--connect', 'off', '--light-paths', 'off']
+SAME_ESTIMATOR = ['--sampler', 'random', '--connect', 'off', '--light-paths', 'off', '--reuse', 'off']
 FASTEST = 'mitsuba llvm_ad_rgb'
 LABELS = {FASTEST: 'Mitsuba 3 llvm_ad_rgb', 'mitsuba scalar_rgb': 'Mitsuba 3 scalar_rgb', 'cycles': 'Cycles'}
 AIMS = {'CBspheres': 10, 'CBbunny_microfacet_cu': 3, 'CBdragon_microfacet_au': 3}

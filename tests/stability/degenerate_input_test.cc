@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/path_reuse.h"
 #include "core/render.h"
 #include "tests/kernel_harness.h"
 #include "tests/stability/curve.h"
@@ -254,7 +255,7 @@ TEST_SUITE("stability") {
       for (const Scene& scene : scenes) {
         const RenderResult result = sound_render(scene, edges[i]);
         CHECK(result.stats.samples >= result.samples.size());
-        CHECK(result.stats.samples <= result.samples.size() * edges[i].spp);
+        CHECK(result.stats.samples <= kPathsTogether * result.samples.size() * edges[i].spp);
       }
     }
   }

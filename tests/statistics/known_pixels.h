@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/image.h"
+#include "core/path_reuse.h"
 #include "core/scene.h"
 #include "core/settings.h"
 #include "tests/statistics/significance.h"
@@ -38,11 +39,21 @@ inline Material diffuse(const glm::dvec3& reflectance) {
   return m;
 }
 
-// p that the pixels' channel has this mean; what is within rounding of it is it.
+// p that the pixels' channel has this mean; what is within rounding of it is it. A number is the mean of a square of pixels: they
+// hang together where paths are used again.
 inline double pixels_p(const Image& image, size_t channel, double mean) {
-  Moments pixels;
-  for (size_t i = channel; i < image.rgb.size(); i += 3) pixels.add(image.rgb[i]);
-  return t_test_p(pixels, mean, 2e-6 * mean);
+  Moments squares;
+  for (size_t y = 0; y < image.height; y += kTogetherSide) {
+    for (size_t x = 0; x < image.width; x += kTogetherSide) {
+      double sum = 0;
+      for (size_t i = 0; i < kPathsTogether; ++i) {
+        const size_t pixel = (y + i / kTogetherSide) * image.width + x + i % kTogetherSide;
+        sum += double(image.rgb[3 * pixel + channel]);
+      }
+      squares.add(sum / kPathsTogether);
+    }
+  }
+  return t_test_p(squares, mean, 2e-6 * mean);
 }
 
 }  // namespace lanewise::test

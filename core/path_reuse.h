@@ -1,0 +1,44 @@
+// Paths of neighbouring pixels used again: light that comes to a diffuse surface from another diffuse one (Bekaert, Sbert & Halton,
+// Accelerating Path Tracing by Re-Using Paths, EGWR 2002).
+//
+// The samples of the same number of kPathsTogether pixels, a square of the picture, are drawn together. Where the camera sees
+// diffuse surfaces, at x_i, and the path of pixel j goes from x_j to a diffuse surface at y_j, what it finds from there on, the
+// radiance L_j that y_j sends out, is not its pixel's alone: each x_i that sees y_j could have chosen it. By the balance
+// heuristic of all of them (Veach 1997, eq. 9.8) pixel i gets
+//
+//   sum over j of  f_i L_j w_ij,    w_ij = p_i(y_j) V(x_i, y_j) / sum over k of p_k(y_j) V(x_k, y_j)
+//
+// where p_i is the density, by area, with which x_i chooses y_j (a cosine lobe), V whether they see each other, and f_i the
+// throughput of x_i: f cos / p, its albedo. So each L_j is shared out with weights that add up to 1. Every pixel's estimate stays
+// unbiased by itself; those of a square hang together. It costs a shadow ray for every other pixel of the square.
+//
+// Shared are vertices without shading normals of their own. What falls on x directly, and what comes from mirrors, glass, metal
+// and emitters, stays with its path.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/plan.h"
+
+namespace lanewise {
+
+// A surface is flat where its normal, on either side, and its shading normal are no further apart: rounding.
+constexpr float kFlat = 1e-6f;
+
+constexpr uint32_t kTogetherSide = 2, kPathsTogether = kTogetherSide * kTogetherSide;
+
+// Why paths are not used again; "" if they are.
+const char* why_no_reuse(const Plan& plan);
+inline bool reuses_paths(const Plan& plan) { return *why_no_reuse(plan) == '\0'; }
+
+// Pixels in whole squares, row by row, each as Batch has them.
+struct PixelSquares {
+  std::vector<uint32_t> pixels;  // kNoPixel: outside of the picture
+  std::vector<uint32_t> slots;   // kNoPixel: not among those that are wanted
+};
+
+// The squares of these pixels (y * width + x), in the order in which they come. slots: as Batch has them, of these pixels.
+PixelSquares squares_of(const std::vector<uint32_t>& pixels, const uint32_t* slots, uint32_t width, uint32_t height);
+
+}  // namespace lanewise

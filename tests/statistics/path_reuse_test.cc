@@ -1,0 +1,108 @@
+// Paths that are used again bring as much light as paths of one pixel alone, to every part of the picture.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/path_reuse.h"
+#include "core/scene.h"
+#include "core/verify/test_scene.h"
+#include "tests/statistics/renders.h"
+#include "tests/statistics/significance.h"
+
+TEST_SUITE_BEGIN("statistics");
+
+namespace lanewise {
+namespace {
+
+#ifdef NDEBUG
+constexpr uint32_t kSeeds = 16, kSpp = 64;
+#else
+constexpr uint32_t kSeeds = 4, kSpp = 8;
+#endif
+constexpr bool kEnough = kSeeds * kSpp > 64;
+
+Settings settings_of(uint32_t depth) {
+  Settings settings;
+  settings.width = 48, settings.height = 36, settings.spp = kSpp, settings.threads = 1, settings.max_depth = depth;
+  return settings;
+}
+
+void check(test::Family& means, const std::string& name, const Scene& scene, Settings settings) {
+  CAPTURE(name);
+  Plan with = make_plan(scene, settings);
+  REQUIRE(reuses_paths(with));
+  settings.reuse = false;
+  Plan without = make_plan(scene, settings);
+  const std::vector<Image> on = test::independent_renders(with, test::simd, 1, kSeeds);
+  const std::vector<Image> off = test::independent_renders(without, test::simd, 1000, kSeeds);
+  const test::Unpaired pictures = test::compare_unpaired(on, off, 12);
+  const double least = *std::ranges::min_element(pictures.block_p);
+  const double block_p = 1 - std::pow(1 - least, double(pictures.block_p.size()));
+  if (kEnough) CHECK(block_p > 0.001);
+  if (kEnough) CHECK(pictures.error < 0.05);
+  means.add(name, pictures.mean_p);
+}
+
+}  // namespace
+
+TEST_CASE("path reuse: as bright as without, at every depth, with light paths and without") {
+  test::Family means;
+  for (const bool light_paths : {false, true}) {
+    for (const uint32_t depth : {2u, 3u, 5u, 9u}) {
+      Settings settings = settings_of(depth);
+      settings.light_paths = light_paths;
+      check(means, "-m " + std::to_string(depth) + (light_paths ? ", light paths" : ""), test::test_scene(), settings);
+    }
+  }
+  CHECK_MESSAGE(means.holds(), means.least_likely());
+}
+
+TEST_CASE(
+    "path reuse: as bright where squares of pixels see several surfaces, near ones, and only some of what others see") {
+  test::Family means;
+  Scene diffuse = test::test_box();
+  diffuse.spheres = {{"near", {0, -0.2, 0.35}, 0.35, test::kWhite}, {"floor", {0.3, 0.2, 0.05}, 0.05, test::kRed}};
+  check(means, "diffuse spheres", diffuse, settings_of(4));
+  Settings coarse = settings_of(4);
+  coarse.width = 12, coarse.height = 9;  // squares as large as walls
+  check(means, "coarse", test::test_scene(), coarse);
+  Scene black = test::test_scene();
+  black.materials[test::kRed].reflectance = {0, 0, 0};
+  black.materials[test::kBlue].reflectance = {0, 0, 0.7};
+  check(means, "black", black, coarse);
+  Settings closer = settings_of(4);
+  closer.view = View::kFit;
+  check(means, "fit", test::test_scene(), closer);
+  for (const uint32_t material : {test::kGold, test::kMirrorMaterial, test::kGlassMaterial, test::kWhite}) {
+    Scene scene = test::test_scene();
+    for (Mesh& mesh : scene.meshes) {
+      if (mesh.triangles.size() > 16) mesh.material = material;  // the one with smooth normals
+    }
+    check(means, "material " + std::to_string(material), scene, settings_of(4));
+  }
+  CHECK_MESSAGE(means.holds(), means.least_likely());
+}
+
+TEST_CASE("path reuse: as bright by a lens, under a sky, of one bounce alone, and by other estimators") {
+  test::Family means;
+  Settings lens = settings_of(4);
+  lens.lens_radius = 0.08, lens.focal_distance = 2.5;
+  check(means, "lens", test::test_scene(), lens);
+  check(means, "sky", test::test_outdoors(), settings_of(4));
+  Settings bounce = settings_of(5);
+  bounce.only_bounce = 3;
+  check(means, "bounce 3", test::test_scene(), bounce);
+  Settings samples = settings_of(3);
+  samples.light_samples = 3;
+  check(means, "three light samples", test::test_scene(), samples);
+  Settings random = settings_of(3);
+  random.sampler = Sampler::kRandom, random.direct = Direct::kLight;
+  check(means, "random, light", test::test_scene(), random);
+  CHECK_MESSAGE(means.holds(), means.least_likely());
+}
+
+}  // namespace lanewise
+
+TEST_SUITE_END();
