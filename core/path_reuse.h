@@ -24,7 +24,7 @@
 namespace lanewise {
 
 // A surface is flat where its normal, on either side, and its shading normal are no further apart: rounding.
-constexpr float kFlat = 1e-6f;
+constexpr float kFlatness = 1e-6f;
 
 constexpr uint32_t kTogetherSide = 2, kPathsTogether = kTogetherSide * kTogetherSide;
 

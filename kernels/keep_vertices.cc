@@ -22,7 +22,7 @@ HWY_INLINE void Scatter(const Vec3& a, float* x, float* y, float* z, VI index) {
 HWY_INLINE MF IsFlat(const PathState& s, size_t i) {
   const Vec3 n = LoadVec3(s.n_x, s.n_y, s.n_z, i), shading = LoadVec3(s.s_x, s.s_y, s.s_z, i);
   const Vec3 apart = Sub(Scale(hn::CopySign(Splat(1.0f), Dot(n, shading)), n), shading);
-  return hn::Le(Dot(apart, apart), Splat(kFlat * kFlat));
+  return hn::Le(Dot(apart, apart), Splat(kFlatness * kFlatness));
 }
 
 // The surface's normal on the side that dir points to.

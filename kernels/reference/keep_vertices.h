@@ -27,7 +27,7 @@ Vec3<T> normal_towards(const Path<T>& p, const Vec3<T>& dir) {
 template <class T>
 bool is_flat(const Path<T>& p) {
   const Vec3<T> s = LANEWISE_VEC3(p, s), apart = normal_towards(p, s) - s;
-  return glm::dot(apart, apart) <= T(kFlat) * T(kFlat);
+  return glm::dot(apart, apart) <= T(kFlatness) * T(kFlatness);
 }
 
 template <class T>
