@@ -102,6 +102,10 @@ TEST_CASE("explain: why stages are left out") {
   settings.max_depth = 3;
   CHECK(why_left_out(make_plan(plain, settings), Stage::kRoulette) == "-m 3: paths end before bounce 4");
   settings.direct = Direct::kBsdf;
+  CHECK(why_left_out(make_plan(plain, settings), Stage::kSharePaths).empty());
+  CHECK(why_left_out(make_plan(plain, settings), Stage::kOcclude).empty());  // between the paths' vertices
+  settings.reuse = false;
+  CHECK(why_left_out(make_plan(plain, settings), Stage::kSharePaths) == "--reuse off");
   CHECK(why_left_out(make_plan(plain, settings), Stage::kOcclude) == "--direct bsdf: lights are found by chance");
 }
 
