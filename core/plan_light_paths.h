@@ -34,6 +34,10 @@ constexpr float kLeastAgreement = 0.5f;
 // More surfaces than this have one sphere around them all.
 constexpr uint32_t kMaxCasters = 16;
 
+// Light paths take a caster for all around a lamp's point from which it is seen under an angle of which the squared sine is this or
+// more: the edge of the cone would hang on the last bits of the point.
+constexpr float kMostSine2 = 0.99f;
+
 // Fills plan.casters and plan.lamp_paths, or leaves them empty. triangles and spheres: all of the scene's, by prim.
 void choose_light_paths(Plan& plan, std::span<const FlatTriangle> triangles, std::span<const FlatSphere> spheres);
 

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace lanewise {
 namespace HWY_NAMESPACE {
 
-// The cone in which a caster's sphere is seen: 1 - cosine of its half angle, and its axis; all directions from inside.
+// The cone in which a caster's sphere is seen: 1 - cosine of its half angle, and its axis; all directions from inside, or near it.
 struct Cone {
   Vec3 axis;
   VF height;
@@ -29,7 +29,8 @@ HWY_INLINE Cone SeenFrom(const Caster& caster, const Vec3& from) {
   const VF distance2 = hn::Max(Dot(to, to), Splat(1e-30f));
   const VF sine2 = hn::Div(Splat(caster.radius * caster.radius), distance2);
   const VF height = hn::Div(sine2, hn::Add(one, hn::Sqrt(hn::Max(hn::Sub(one, sine2), hn::Zero(DF())))));
-  return {Scale(hn::Div(one, hn::Sqrt(distance2)), to), hn::IfThenElse(hn::Lt(sine2, one), height, Splat(2.0f))};
+  return {Scale(hn::Div(one, hn::Sqrt(distance2)), to),
+          hn::IfThenElse(hn::Lt(sine2, Splat(kMostSine2)), height, Splat(2.0f))};
 }
 
 // A cone chosen by its solid angle.

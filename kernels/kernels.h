@@ -105,7 +105,7 @@ constexpr KernelFields kEmitFields = {.reads = "batch step", .writes = "pixel sa
 // and whether the direction lies in others.
 constexpr KernelBounds kEmitBounds = {
     .fields = {exact("pixel"), exact("sample"), reach_ulps("o", 2), input_ulps("beta", 8, 2e-6), exact("L"),
-               exact("pdf"), exact("lamps"), ulps("d", 32)},
+               exact("pdf"), exact("lamps"), ulps("d", 16)},
     .choice = {.margin = 4, .max_share = 2e-3}};
 
 // Where shading normals s are not the surface's own n, what a light path carries is, over what a path from the camera would have by

@@ -10,7 +10,7 @@
 
 namespace lanewise::reference {
 
-// The cone in which a caster is seen: 1 - cosine of its half angle, and its axis; from inside all directions.
+// The cone in which a caster is seen: 1 - cosine of its half angle, and its axis; from inside, or near it, all directions.
 template <class T>
 struct Cone {
   Vec3<T> axis;
@@ -20,7 +20,7 @@ struct Cone {
     const Vec3<T> to = vec3<T>(caster.center) - from;
     const T distance2 = std::max(glm::dot(to, to), T(1e-30f)), sine2 = T(caster.radius) * T(caster.radius) / distance2;
     axis = to / std::sqrt(distance2);
-    height = sine2 < 1 ? sine2 / (1 + std::sqrt(1 - sine2)) : T(2);
+    height = sine2 < T(kMostSine2) ? sine2 / (1 + std::sqrt(1 - sine2)) : T(2);
   }
   bool contains(const Vec3<T>& direction) const {
     return height == 2 || glm::dot(direction - axis, direction - axis) <= 2 * height;
