@@ -6,7 +6,7 @@
 
 Any file that Lanewise reads, seen from its camera, 120 x 90 pixels, as `lanewise convert` writes it. Sixteen pictures
 of each renderer; the tests are those of welch.py. Mitsuba finds light by way of mirror and glass spheres by chance alone, so
-Lanewise renders with --connect off --light-paths off. Exits with 0 if every verdict is good or if Mitsuba is not
+Lanewise renders with --connect off --light-paths off --reuse off. Exits with 0 if every verdict is good or if Mitsuba is not
 installed, which it says.
 """
 import argparse
@@ -35,7 +35,7 @@ WIDTH, HEIGHT, PICTURES = 120, 90, 16
 
 
 def of_lanewise(scene, depth, samples):
-    flags = '--connect', 'off', '--light-paths', 'off', '-r', WIDTH, HEIGHT, '-m', depth, '-s', samples
+    flags = '--connect', 'off', '--light-paths', 'off', '--reuse', 'off', '-r', WIDTH, HEIGHT, '-m', depth, '-s', samples
     return np.stack([lanewise.render(scene, *flags, '--seed', seed)[0] for seed in range(PICTURES)])
 
 

@@ -75,9 +75,8 @@ class Subject(unbiased.Subject):
 
     def lanewise(self, depth, samples, seed, normals=None):
         picture, stats = lanewise.render(
-            self.path, *self.flags, '--light-paths', 'off', '--connect', 'on' if self.connect else 'off',
-            '-r', str(unbiased.WIDTH),
-            str(unbiased.HEIGHT), '-s', str(samples), '-m', str(depth), '--seed', str(seed), '--normals', 'flat', '-t',
+            self.path, *self.flags, '--light-paths', 'off', '--reuse', 'off', '--connect', 'on' if self.connect else 'off',
+            '-r', str(unbiased.WIDTH), str(unbiased.HEIGHT), '-s', str(samples), '-m', str(depth), '--seed', str(seed), '--normals', 'flat', '-t',
             str(self.threads), camera=self.camera)
         if stats['invalid_samples']:
             raise SystemExit(f'{self.path}: {stats["invalid_samples"]} invalid samples')

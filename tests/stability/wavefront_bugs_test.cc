@@ -92,6 +92,7 @@ TEST_SUITE("stability") {
   TEST_CASE("wavefront: and as the theory counts it") {
     Settings settings = small();
     settings.spp = 16 * kSamples;
+    settings.reuse = false;  // so that pixels do not hang together
     for (const Direct direct : {Direct::kMis, Direct::kLight, Direct::kBsdf}) {
       for (uint32_t depth = 0; depth <= 4; ++depth) {
         CAPTURE(depth);
