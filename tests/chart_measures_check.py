@@ -1,11 +1,15 @@
 """What the charts of `lanewise chart` show, against what is known: run by chart_command_test.cc, with the folder perf/
 as its argument. Says nothing where all is as it should be."""
+import pathlib
 import sys
+import tempfile
 
-sys.path.insert(0, sys.argv[1])
+sys.path[:0] = [sys.argv[1], sys.argv[1] + '/peers']
 import numpy as np  # noqa: E402
 
 import chart_summary  # noqa: E402
+import collada  # noqa: E402
+import lanewise  # noqa: E402
 import picture_error  # noqa: E402
 
 
@@ -72,5 +76,21 @@ def check_picture_error():
     near(picture_error.mrse(picture, reference), picture_error.compare(picture, reference)['mrse'])
 
 
-for check in (check_summary, check_bounds, check_errors, check_pareto, check_picture_error):
+def check_views():
+    """The peers' cameras are those of `lanewise render --view`, for files of any shape of picture."""
+    text = lanewise.SHIPPED[0].read_text()
+    assert '<aspect_ratio>1.3333333333333333<' in text
+    for aspect in ('1.3333333333333333', '1.7777777777777777', '1'):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / 'scene.dae'
+            scene.write_text(text.replace('<aspect_ratio>1.3333333333333333<', f'<aspect_ratio>{aspect}<'))
+            flags = '-r', 480, 360, '-m', 1, '-s', 1, '--sampler', 'random'
+            by_flag = lanewise.render(scene, *flags, '--view', 'fit')[0]
+            camera = collada.Scene(scene).camera('fit').framed(480, 360)
+            by_camera = lanewise.render(scene, *flags, camera=camera)[0]
+            moved = (np.abs(by_flag - by_camera) > 0.01 * by_flag).any(axis=2).mean()
+            assert moved < 0.01, (aspect, moved)
+
+
+for check in (check_summary, check_bounds, check_errors, check_pareto, check_picture_error, check_views):
     check()

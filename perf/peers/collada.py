@@ -61,7 +61,7 @@ class Scene:
                  (s.center - s.radius, s.center + s.radius) for s in self.shapes]
         lo, hi = np.min([b[0] for b in boxes], 0), np.max([b[1] for b in boxes], 0)
         center = (lo + hi) / 2
-        pixel = 2 * tan_y / 600
+        pixel = 2 * max(tan_y, tan_x * 360 / 480) / 600  # as core/framing.cc: the field of view holds all of the file's
         return Camera(center + 1.5 * np.linalg.norm(hi - lo) * back, center, 240 * pixel, 180 * pixel)
 
     def _visit(self, node, parent):
