@@ -161,7 +161,7 @@ std::string why_so(const Plan& plan, Stage stage) {
     case Stage::kTakeLamps:
       return "paths leave caustics to light paths";
     case Stage::kKeepFirst:
-      return "of diffuse surfaces with normals of their own";
+      return "of flat diffuse surfaces, and spheres";
     case Stage::kConnectPaths:
       return "light between diffuse surfaces goes to all " + std::to_string(kPathsTogether) +
              " pixels of a square that see where it comes from";
