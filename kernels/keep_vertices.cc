@@ -12,12 +12,6 @@ HWY_BEFORE_NAMESPACE();
 namespace lanewise {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE void Scatter(const Vec3& a, float* x, float* y, float* z, VI index) {
-  hn::ScatterIndex(a.x, DF(), x, index);
-  hn::ScatterIndex(a.y, DF(), y, index);
-  hn::ScatterIndex(a.z, DF(), z, index);
-}
-
 // Where the surface is shaded by its own normal.
 HWY_INLINE MF IsFlat(const PathState& s, size_t i) {
   const Vec3 n = LoadVec3(s.n_x, s.n_y, s.n_z, i), shading = LoadVec3(s.s_x, s.s_y, s.s_z, i);
@@ -42,10 +36,10 @@ void KeepFirst(const Plan&, const PathState& s, Range range) {
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const VI slot = SlotsWhere(s, i, hn::And(IsFlat(s, i), hn::Gt(MaxElement(beta), hn::Zero(DF()))));
-    Scatter(LoadVec3(s.o_x, s.o_y, s.o_z, i), kept.x_x, kept.x_y, kept.x_z, slot);
+    ScatterVec3(LoadVec3(s.o_x, s.o_y, s.o_z, i), kept.x_x, kept.x_y, kept.x_z, slot);
     const Vec3 n = NormalTowards(s, i, LoadVec3(s.d_x, s.d_y, s.d_z, i));
-    Scatter(n, kept.n_x, kept.n_y, kept.n_z, slot);
-    Scatter(beta, kept.f_r, kept.f_g, kept.f_b, slot);
+    ScatterVec3(n, kept.n_x, kept.n_y, kept.n_z, slot);
+    ScatterVec3(beta, kept.f_r, kept.f_g, kept.f_b, slot);
   }
 }
 
@@ -55,17 +49,17 @@ void KeepSecond(const Plan&, const PathState& s, Range range) {
   const VF zero = hn::Zero(d), one = Splat(1.0f);
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const VI own_slot = hn::BitCast(DI(), hn::Load(DU(), s.slot + i));
-    const Vec3 first = {hn::GatherIndex(d, kept.n_x, own_slot), hn::GatherIndex(d, kept.n_y, own_slot),
-                        hn::GatherIndex(d, kept.n_z, own_slot)};
+    const Vec3 first = GatherVec3(kept.n_x, kept.n_y, kept.n_z, own_slot);
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const VF most = MaxElement(beta);
     const MF keeps = hn::And(hn::And(IsFlat(s, i), hn::Gt(most, zero)), hn::Gt(Dot(first, first), zero));
     const VI slot = SlotsWhere(s, i, keeps);
     const Vec3 n = NormalTowards(s, i, Neg(LoadVec3(s.d_x, s.d_y, s.d_z, i)));
-    Scatter(MulAdd(hn::Load(d, s.err + i), n, LoadVec3(s.o_x, s.o_y, s.o_z, i)), kept.y_x, kept.y_y, kept.y_z, slot);
-    Scatter(n, kept.m_x, kept.m_y, kept.m_z, slot);
+    ScatterVec3(MulAdd(hn::Load(d, s.err + i), n, LoadVec3(s.o_x, s.o_y, s.o_z, i)), kept.y_x, kept.y_y, kept.y_z,
+                slot);
+    ScatterVec3(n, kept.m_x, kept.m_y, kept.m_z, slot);
     const Vec3 L = LoadVec3(s.L_r, s.L_g, s.L_b, i);
-    Scatter(L, kept.L_r, kept.L_g, kept.L_b, slot);
+    ScatterVec3(L, kept.L_r, kept.L_g, kept.L_b, slot);
     hn::ScatterIndex(hn::Div(one, hn::IfThenElse(keeps, most, one)), d, kept.gain, slot);
     StoreVec3(IfThenElseZero(hn::Not(keeps), L), s.L_r, s.L_g, s.L_b, i);
     StoreVec3(IfThenElse(keeps, {most, most, most}, beta), s.beta_r, s.beta_g, s.beta_b, i);

@@ -13,12 +13,9 @@ namespace HWY_NAMESPACE {
 
 // Padding retires to its own slot, past the wave's last: all its lanes write there, and nobody reads it.
 void Retire(const Plan&, const PathState& s, Range range) {
-  const DF d;
-  for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
+  for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
     const VI slot = hn::BitCast(DI(), hn::Load(DU(), s.slot + i));
-    hn::ScatterIndex(hn::Load(d, s.L_r + i), d, s.result_r, slot);
-    hn::ScatterIndex(hn::Load(d, s.L_g + i), d, s.result_g, slot);
-    hn::ScatterIndex(hn::Load(d, s.L_b + i), d, s.result_b, slot);
+    ScatterVec3(LoadVec3(s.L_r, s.L_g, s.L_b, i), s.result_r, s.result_g, s.result_b, slot);
   }
 }
 

@@ -1,3 +1,4 @@
+#include "core/path_reuse.h"
 #include "kernels/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -16,9 +17,6 @@ HWY_INLINE VI Partners(size_t i, uint32_t partner) {
   const DI d;
   return hn::Xor(hn::Iota(d, static_cast<int32_t>(i)), hn::Set(d, static_cast<int32_t>(partner)));
 }
-HWY_INLINE Vec3 GatherFrom(const float* x, const float* y, const float* z, VI index) {
-  return {hn::GatherIndex(DF(), x, index), hn::GatherIndex(DF(), y, index), hn::GatherIndex(DF(), z, index)};
-}
 
 // From the first vertices of the slots `firsts` to the second ones of slots i, i + 1, ...
 struct Connection {
@@ -30,8 +28,8 @@ struct Connection {
 HWY_INLINE Connection Connect(const KeptVertices& kept, size_t i, VI firsts) {
   const DF d;
   Connection c;
-  c.x = GatherFrom(kept.x_x, kept.x_y, kept.x_z, firsts);
-  c.n = GatherFrom(kept.n_x, kept.n_y, kept.n_z, firsts);
+  c.x = GatherVec3(kept.x_x, kept.x_y, kept.x_z, firsts);
+  c.n = GatherVec3(kept.n_x, kept.n_y, kept.n_z, firsts);
   c.l = Sub(LoadVec3(kept.y_x, kept.y_y, kept.y_z, i), c.x);
   const Vec3 m = LoadVec3(kept.m_x, kept.m_y, kept.m_z, i);
   const VF leaves = Dot(c.n, c.l), arrives = hn::Neg(Dot(m, c.l)), square = Dot(c.l, c.l);
@@ -41,6 +39,9 @@ HWY_INLINE Connection Connect(const KeptVertices& kept, size_t i, VI firsts) {
   c.density = hn::IfThenElseZero(shared, hn::Mul(hn::Div(leaves, square), hn::Div(arrives, square)));
   return c;
 }
+
+// A channel of c, and so of L, for each of the others.
+static_assert(kPathsTogether == 4);
 
 void ConnectPaths(const Plan&, const PathState& s, Range range) {
   const DF d;
@@ -92,9 +93,9 @@ void SharePaths(const Plan&, const PathState& s, Range range) {
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const VF zero = hn::Zero(d);
     Vec3 got = {zero, zero, zero};
-    for (uint32_t partner = 0; partner < 4; ++partner) {
+    for (uint32_t partner = 0; partner < kPathsTogether; ++partner) {
       const VI from = Partners(i, partner);
-      got = MulAdd(hn::GatherIndex(d, weights[partner], from), GatherFrom(s.c_r, s.c_g, s.c_b, from), got);
+      got = MulAdd(hn::GatherIndex(d, weights[partner], from), GatherVec3(s.c_r, s.c_g, s.c_b, from), got);
     }
     const Vec3 f = LoadVec3(kept.f_r, kept.f_g, kept.f_b, i), own = LoadVec3(kept.L_r, kept.L_g, kept.L_b, i);
     StoreVec3(Add(own, Mul(f, got)), s.result_r, s.result_g, s.result_b, i);

@@ -46,6 +46,16 @@ HWY_INLINE Vec3 GatherVec3(const float* base, VI index) {
           hn::GatherIndex(DF(), base + 2, index)};
 }
 
+// At places of three arrays.
+HWY_INLINE Vec3 GatherVec3(const float* x, const float* y, const float* z, VI index) {
+  return {hn::GatherIndex(DF(), x, index), hn::GatherIndex(DF(), y, index), hn::GatherIndex(DF(), z, index)};
+}
+HWY_INLINE void ScatterVec3(const Vec3& a, float* x, float* y, float* z, VI index) {
+  hn::ScatterIndex(a.x, DF(), x, index);
+  hn::ScatterIndex(a.y, DF(), y, index);
+  hn::ScatterIndex(a.z, DF(), z, index);
+}
+
 HWY_INLINE Vec3 Add(const Vec3& a, const Vec3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE Vec3 Sub(const Vec3& a, const Vec3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE Vec3 Mul(const Vec3& a, const Vec3& b) { return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)}; }
