@@ -32,6 +32,9 @@ constexpr uint32_t kTogetherSide = 2, kPathsTogether = kTogetherSide * kTogether
 const char* why_no_reuse(const Plan& plan);
 inline bool reuses_paths(const Plan& plan) { return *why_no_reuse(plan) == '\0'; }
 
+// Of the squares of pixels that hang together.
+inline uint32_t side_together(const Plan& plan) { return reuses_paths(plan) ? kTogetherSide : 1; }
+
 // Pixels in whole squares, row by row, each as Batch has them.
 struct PixelSquares {
   std::vector<uint32_t> pixels;  // kNoPixel: outside of the picture

@@ -211,7 +211,7 @@ void sample_square(const Plan& plan, const uint32_t* pixels, const uint32_t* slo
   for (uint32_t i = 0; i < kPathsTogether; ++i) {
     if (pixels[i] != kNoPixel) results[i] = sample_pixel(plan, pixels[i], sample, profile, &kept[i]);
   }
-  const auto sees = [&](uint32_t i, const reference::Vec3<T>& l) {
+  const auto sees = [&](uint32_t i, uint32_t, const reference::Vec3<T>& l) {
     ++profile.shadow_rays;
     return !reference::any_hit(plan, LANEWISE_VEC3(kept[i], x), l);
   };
@@ -289,8 +289,8 @@ RenderResult render_reference(const Plan& plan, const RenderControl& control) {
                            [](uint64_t sum, const Profile& p) { return sum + p.invalid_samples; });
   });
   LightPaths<T> light(plan, profiles);
-  Exposure exposure = expose(plan.settings, threads, draw, counting, has_light_paths(plan) ? &light : nullptr,
-                             reuses_paths(plan) ? kTogetherSide : 1);
+  Exposure exposure =
+      expose(plan.settings, threads, draw, counting, has_light_paths(plan) ? &light : nullptr, side_together(plan));
 
   return make_result(std::move(exposure), profiles, control.resume, std::chrono::steady_clock::now() - start);
 }

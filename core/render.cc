@@ -60,8 +60,8 @@ RenderResult render(const Plan& plan, const RenderControl& control, ProfileDetai
   LightPaths light(plan, local, control.remote, invalid);
   const RenderControl counting = count_invalid(control, [&] { return invalid.load(); });
   const uint32_t workers = threads + (control.remote ? control.remote->workers() : 0);
-  Exposure exposure = expose(plan.settings, workers, draw, counting, has_light_paths(plan) ? &light : nullptr,
-                             reuses_paths(plan) ? kTogetherSide : 1);
+  Exposure exposure =
+      expose(plan.settings, workers, draw, counting, has_light_paths(plan) ? &light : nullptr, side_together(plan));
 
   const auto elapsed = std::chrono::steady_clock::now() - start;
   std::vector<Profile> profiles = local.profiles();

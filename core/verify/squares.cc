@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -21,7 +22,7 @@ constexpr double kUlp = 0x1p-23;
 
 double unit(Rng& rng) { return std::uniform_real_distribution<double>(0, 1)(rng); }
 Vec3<float> random_unit(Rng& rng) {
-  const double z = 2 * unit(rng) - 1, phi = 2 * 3.14159265358979 * unit(rng), r = std::sqrt(1 - z * z);
+  const double z = 2 * unit(rng) - 1, phi = 2 * std::numbers::pi * unit(rng), r = std::sqrt(1 - z * z);
   return {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), static_cast<float>(z)};
 }
 Vec3<float> random_rgb(Rng& rng) {
@@ -236,12 +237,8 @@ double share_paths_error(uint32_t paths, uint32_t seed) {
       want[k] = before[i + k];
       all_of_it += square[k].gain > 0 ? LANEWISE_RGB(square[k], L) + square[k].gain * before[i + k] : before[i + k];
     }
-    uint32_t second = 0;
-    const auto sees = [&](uint32_t first, const Vec3<double>&) { return is_open(i + second, first ^ second); };
-    reference::share_paths(square, want, [&](uint32_t first, const Vec3<double>& l) {
-      // Whose second vertex l comes to.
-      for (second = 0; LANEWISE_VEC3(square[second], y) - LANEWISE_VEC3(square[first], x) != l;) ++second;
-      return sees(first, l);
+    reference::share_paths(square, want, [&](uint32_t first, uint32_t second, const Vec3<double>&) {
+      return is_open(i + second, first ^ second);
     });
     for (uint32_t k = 0; k < kPathsTogether; ++k) {
       const Vec3<double> got(s.result_r[i + k], s.result_g[i + k], s.result_b[i + k]);

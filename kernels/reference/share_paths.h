@@ -20,8 +20,8 @@ T connect_paths(const KeptPath<T>& first, const KeptPath<T>& second, Vec3<T>& l)
   return second.gain > 0 && leaves > 0 && arrives > 0 ? (leaves / square) * (arrives / square) : T(0);
 }
 
-// results: what each path has retired with; becomes what its pixel gets. sees(i, l): whether nothing is in the way from the
-// first vertex of path i along l.
+// results: what each path has retired with; becomes what its pixel gets. sees(i, j, l): whether nothing is in the way from the
+// first vertex of path i along l to the second one of path j.
 template <class T, class Sees>
 void share_paths(const Square<T>& kept, std::array<Vec3<T>, kPathsTogether>& results, const Sees& sees) {
   std::array<Vec3<T>, kPathsTogether> got{};
@@ -32,7 +32,7 @@ void share_paths(const Square<T>& kept, std::array<Vec3<T>, kPathsTogether>& res
     for (uint32_t i = 0; i < kPathsTogether; ++i) {
       Vec3<T> l;
       weights[i] = connect_paths(kept[i], kept[j], l);
-      if (i != j && weights[i] > 0 && !sees(i, l)) weights[i] = 0;
+      if (i != j && weights[i] > 0 && !sees(i, j, l)) weights[i] = 0;
       sum += weights[i];
     }
     if (weights[j] == 0) weights = {}, weights[j] = sum = 1;
