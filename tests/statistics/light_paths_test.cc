@@ -1,63 +1,27 @@
 // Light paths bring as much light as paths from the camera that look for it by themselves, to every part of the picture.
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "core/plan_light_paths.h"
 #include "core/scene.h"
 #include "core/verify/test_scene.h"
-#include "tests/statistics/renders.h"
-#include "tests/statistics/significance.h"
+#include "tests/statistics/two_estimators.h"
 
 TEST_SUITE_BEGIN("statistics");
 
 namespace lanewise {
 namespace {
 
-#ifdef NDEBUG
-constexpr uint32_t kSeeds = 16, kSpp = 64;
-#else
-constexpr uint32_t kSeeds = 4, kSpp = 8;
-#endif
-constexpr bool kEnough = kSeeds * kSpp > 64;
+using test::kEnough;
+using test::settings_of;
 
-Settings settings_of(uint32_t depth) {
-  Settings settings;
-  settings.width = 48, settings.height = 36, settings.spp = kSpp, settings.threads = 1, settings.max_depth = depth;
-  settings.view = View::kFile;
-  return settings;
-}
-
-struct Difference {
-  double mean_p, error;   // of the pictures' means, see test::Unpaired
-  double block_p;         // the least of any block's, for as many blocks
-  double variance_ratio;  // of blocks, by paths from the camera alone over with light paths
-};
-
-Difference compare(const Scene& scene, Settings settings) {
-  Plan with = make_plan(scene, settings);
+// With light paths, and by paths from the camera alone.
+test::Difference compare(const Scene& scene, Settings settings) {
+  const Plan with = make_plan(scene, settings);
   REQUIRE(has_light_paths(with));
   settings.light_paths = false;
-  Plan without = make_plan(scene, settings);
-  const std::vector<Image> on = test::independent_renders(with, test::simd, 1, kSeeds);
-  const std::vector<Image> off = test::independent_renders(without, test::simd, 1000, kSeeds);
-  const test::Unpaired pictures = test::compare_unpaired(on, off, 12);
-  const double least = *std::ranges::min_element(pictures.block_p), blocks = double(pictures.block_p.size());
-  const auto variance = [&](const std::vector<Image>& p) {
-    double sum = 0;
-    for (const test::Moments& m : test::block_moments(p, 12)) sum += m.variance();
-    return sum;
-  };
-  return {pictures.mean_p, pictures.error, 1 - std::pow(1 - least, blocks), variance(off) / variance(on)};
-}
-
-void check(test::Family& means, const std::string& name, const Difference& d) {
-  CAPTURE(name);
-  if (kEnough) CHECK(d.block_p > 0.001);
-  if (kEnough) CHECK(d.error < 0.05);
-  means.add(name, d.mean_p);
+  return test::compare(with, make_plan(scene, settings));
 }
 
 }  // namespace
@@ -65,15 +29,15 @@ void check(test::Family& means, const std::string& name, const Difference& d) {
 TEST_CASE("light paths: as bright as paths from the camera, for mirrors, glass and metal, at every depth") {
   test::Family means;
   for (const uint32_t depth : {2u, 3u, 5u, 9u}) {
-    Difference d = compare(test::test_scene(), settings_of(depth));
-    check(means, "scene at -m " + std::to_string(depth), d);
+    const test::Difference d = compare(test::test_scene(), settings_of(depth));
+    test::check_blocks(means, "scene at -m " + std::to_string(depth), d);
     if (kEnough && depth > 2) CHECK(d.variance_ratio > 1.2);
   }
   for (const double alpha : {0.02, 0.1, 0.5, 1.0}) {
     Scene scene = test::test_box();
     for (Sphere& sphere : scene.spheres) sphere.material = test::kGold;
     scene.materials[test::kGold].alpha = alpha;
-    check(means, "alpha " + std::to_string(alpha), compare(scene, settings_of(5)));
+    test::check_blocks(means, "alpha " + std::to_string(alpha), compare(scene, settings_of(5)));
   }
   CHECK_MESSAGE(means.holds(), means.least_likely());
 }
@@ -84,25 +48,25 @@ TEST_CASE(
   test::Family means;
   Scene lamp = test::test_box();
   lamp.spheres[2].material = test::kSmallLight;
-  check(means, "sphere lamp", compare(lamp, settings_of(5)));
+  test::check_blocks(means, "sphere lamp", compare(lamp, settings_of(5)));
 
   // Nothing else lights the box: all that it gets comes out of the glass.
   Scene bulb = test::test_box();
   const glm::dvec3 center(0, 0, 0.8);
   bulb.spheres = {{"glass", center, 0.3, test::kGlassMaterial}, {"lamp", center, 0.1, test::kSmallLight}};
   std::erase_if(bulb.meshes, [](const Mesh& m) { return m.material == test::kCeilingLight; });
-  check(means, "bulb", compare(bulb, settings_of(5)));
+  test::check_blocks(means, "bulb", compare(bulb, settings_of(5)));
 
   Scene rough = test::test_box();
   rough.materials[test::kGlassMaterial].roughness = 0.2;
   rough.materials[test::kGlassMaterial].transmittance = {0.8, 0.9, 1};
-  check(means, "rough glass", compare(rough, settings_of(5)));
+  test::check_blocks(means, "rough glass", compare(rough, settings_of(5)));
 
   Scene overlapping = test::test_box();
   overlapping.spheres = {{"a", {-0.2, 0, 0.5}, 0.3, test::kMirrorMaterial},
                          {"b", {0.1, 0.1, 0.5}, 0.3, test::kGold},
                          {"around", {0, 0, 0.75}, 0.2, test::kGlassMaterial}};
-  check(means, "overlapping", compare(overlapping, settings_of(4)));
+  test::check_blocks(means, "overlapping", compare(overlapping, settings_of(4)));
   CHECK_MESSAGE(means.holds(), means.least_likely());
 }
 
@@ -114,7 +78,7 @@ TEST_CASE(
     for (Mesh& mesh : scene.meshes) {
       if (mesh.triangles.size() > 16) mesh.material = material;  // the one with smooth normals
     }
-    check(means, "material " + std::to_string(material), compare(scene, settings_of(5)));
+    test::check_blocks(means, "material " + std::to_string(material), compare(scene, settings_of(5)));
   }
   CHECK_MESSAGE(means.holds(), means.least_likely());
 }
@@ -123,14 +87,14 @@ TEST_CASE("light paths: as bright by a lens, on textures, under a sky, and of on
   test::Family means;
   Settings lens = settings_of(5);
   lens.lens_radius = 0.08, lens.focal_distance = 2.5;
-  check(means, "lens", compare(test::test_scene(), lens));
+  test::check_blocks(means, "lens", compare(test::test_scene(), lens));
   Settings bounce = settings_of(5);
   bounce.only_bounce = 3;
-  check(means, "bounce 3", compare(test::test_scene(), bounce));
+  test::check_blocks(means, "bounce 3", compare(test::test_scene(), bounce));
   Settings samples = settings_of(4);
   samples.light_samples = 3;
-  check(means, "three light samples", compare(test::test_scene(), samples));
-  check(means, "sky", compare(test::test_outdoors(), settings_of(4)));
+  test::check_blocks(means, "three light samples", compare(test::test_scene(), samples));
+  test::check_blocks(means, "sky", compare(test::test_outdoors(), settings_of(4)));
   CHECK_MESSAGE(means.holds(), means.least_likely());
 }
 

@@ -1,48 +1,25 @@
 // Paths that are used again bring as much light as paths of one pixel alone, to every part of the picture.
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "core/path_reuse.h"
 #include "core/scene.h"
 #include "core/verify/test_scene.h"
-#include "tests/statistics/renders.h"
-#include "tests/statistics/significance.h"
+#include "tests/statistics/two_estimators.h"
 
 TEST_SUITE_BEGIN("statistics");
 
 namespace lanewise {
 namespace {
 
-#ifdef NDEBUG
-constexpr uint32_t kSeeds = 16, kSpp = 64;
-#else
-constexpr uint32_t kSeeds = 4, kSpp = 8;
-#endif
-constexpr bool kEnough = kSeeds * kSpp > 64;
-
-Settings settings_of(uint32_t depth) {
-  Settings settings;
-  settings.width = 48, settings.height = 36, settings.spp = kSpp, settings.threads = 1, settings.max_depth = depth;
-  return settings;
-}
+using test::settings_of;
 
 void check(test::Family& means, const std::string& name, const Scene& scene, Settings settings) {
-  CAPTURE(name);
-  Plan with = make_plan(scene, settings);
+  const Plan with = make_plan(scene, settings);
   REQUIRE(reuses_paths(with));
   settings.reuse = false;
-  Plan without = make_plan(scene, settings);
-  const std::vector<Image> on = test::independent_renders(with, test::simd, 1, kSeeds);
-  const std::vector<Image> off = test::independent_renders(without, test::simd, 1000, kSeeds);
-  const test::Unpaired pictures = test::compare_unpaired(on, off, 12);
-  const double least = *std::ranges::min_element(pictures.block_p);
-  const double block_p = 1 - std::pow(1 - least, double(pictures.block_p.size()));
-  if (kEnough) CHECK(block_p > 0.001);
-  if (kEnough) CHECK(pictures.error < 0.05);
-  means.add(name, pictures.mean_p);
+  test::check_blocks(means, name, test::compare(with, make_plan(scene, settings)));
 }
 
 }  // namespace
