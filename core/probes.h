@@ -13,8 +13,8 @@ namespace lanewise {
 
 class Probes {
  public:
-  static constexpr uint32_t kMostSpacing = 32;  // one pixel in so many is a probe,
-  static constexpr uint32_t kWanted = 256;      // or more where a picture would have fewer probes than this
+  static constexpr uint32_t kMostSpacing = 32;  // one square in so many is a probe,
+  static constexpr uint32_t kWanted = 256;      // or more where a picture would have fewer squares of probes
 
   // No probes if `on` is false. side: of the squares of pixels that are drawn together, and are probes together.
   Probes(const Settings& settings, bool on, uint32_t side = 1);

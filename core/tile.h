@@ -16,8 +16,9 @@ struct Tile {
   std::vector<uint32_t> pixels;  // y * width + x
 };
 
-// Cuts the window, along multiples of the side, so that no square of core/path_reuse.h is cut, into squares of a side that gives a tile's samples, so many a pixel, a full wave, if the picture is large
-// enough for that to leave every thread work to the end.
+// Cuts the window into squares of a side that gives a tile's samples, so many a pixel, a full wave, if the picture is large
+// enough for that to leave every thread work to the end. Cuts are at multiples of the side: through no square of
+// core/path_reuse.h.
 inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples) {
   constexpr uint32_t kMinSide = 16, kMaxSide = 64;
   uint32_t side = kMinSide;

@@ -118,7 +118,7 @@ void add_transport_flags(CLI::App& app, RenderOptions& o) {
        {"course-masking", Model::kCourseMasking},
        {"course-clamp", Model::kCourseClamp}},
       "Microfacets and estimators: exact, or as the course program has them (--direct light, --bsdf-sampling ndf, "
-      "--fresnel course, --connect off, and its masking and clamp, of which there is also each alone)");
+      "--fresnel course, --connect off, --reuse off, and its masking and clamp, of which there is also each alone)");
 }
 
 void add_material_flags(CLI::App& app, RenderOptions& o) {
