@@ -40,17 +40,25 @@ struct Sums {
   }
 };
 
-// Over the whole picture, with the same bits for any number of threads.
+size_t square_columns(const MeanPicture& picture) { return picture.square_column(picture.width - 1) + size_t{1}; }
+size_t square_rows(const MeanPicture& picture) { return picture.square_row(picture.height - 1) + size_t{1}; }
+
+// Over the whole picture, a term for each of its squares, with the same bits for any number of threads.
 Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
-  std::vector<Sums> rows(picture.height);
+  std::vector<Sums> rows(square_rows(picture));
   const auto sum_row = [&](size_t row, uint32_t) {
-    const auto y = static_cast<uint32_t>(row);
-    for (uint32_t x = 0; x < picture.width; ++x) {
-      const size_t i = row * picture.width + x;
-      const std::array<double, 3> square = squares(i);
-      if (square == std::array<double, 3>{}) continue;
-      rows[row].add(relative(square, likely_value(picture, x, y, picture.pixels[i])));
+    std::vector<double> terms(square_columns(picture));
+    const size_t begin = row * picture.side, end = begin + picture.side;
+    for (auto y = static_cast<uint32_t>(std::max<size_t>(begin, picture.row) - picture.row);
+         y < std::min<size_t>(end - picture.row, picture.height); ++y) {
+      for (uint32_t x = 0; x < picture.width; ++x) {
+        const size_t i = size_t{y} * picture.width + x;
+        const std::array<double, 3> square = squares(i);
+        if (square == std::array<double, 3>{}) continue;
+        terms[picture.square_column(x)] += relative(square, likely_value(picture, x, y, picture.pixels[i]));
+      }
     }
+    for (const double term : terms) rows[row].add(term);
     return uint64_t{0};
   };
   run_workers(threads, rows.size(), sum_row, nullptr);
@@ -59,12 +67,14 @@ Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint3
   return all;
 }
 
-// f(pixel) for the up to eight pixels around (x, y).
+// f(pixel) for the up to eight pixels around (x, y) that are independent of it.
 template <class F>
 void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
   for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
     for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
-      if (i != x || j != y) f(picture.pixels[size_t{j} * picture.width + i]);
+      const bool together =
+          picture.square_column(i) == picture.square_column(x) && picture.square_row(j) == picture.square_row(y);
+      if (!together) f(picture.pixels[size_t{j} * picture.width + i]);
     }
   }
 }
@@ -90,10 +100,11 @@ bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelM
 
 // variance: relative, of what the terms have been multiplied by.
 ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double variance) {
-  const double n = static_cast<double>(picture.pixels.size());
+  const auto pixels = static_cast<double>(picture.pixels.size());
+  const auto squares = static_cast<double>(square_columns(picture) * square_rows(picture));
   // Both the picture's own error and what is known of it vary.
-  variance += 2 * all.variance(n) + kLikelyValueError * kLikelyValueError;
-  const double value = all.terms / n, spread = std::exp(1.96 * std::sqrt(variance));
+  variance += 2 * all.variance(squares) + kLikelyValueError * kLikelyValueError;
+  const double value = all.terms / pixels, spread = std::exp(1.96 * std::sqrt(variance));
   return {value, value / spread, value * spread};
 }
 

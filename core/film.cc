@@ -46,8 +46,8 @@ PixelMean sum_of(const PixelMean& a, const PixelMean& b) {
   return {{a.rgb[0] + b.rgb[0], a.rgb[1] + b.rgb[1], a.rgb[2] + b.rgb[2]}, a.variance + b.variance};
 }
 
-MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window) {
-  MeanPicture picture{window.width, window.height, {}};
+MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side) {
+  MeanPicture picture{window.width, window.height, {}, side, window.x % side, window.y % side};
   picture.pixels.reserve(size_t{window.width} * window.height);
   for (uint32_t y = 0; y < window.height; ++y) {
     for (uint32_t x = 0; x < window.width; ++x) {

@@ -42,13 +42,21 @@ struct PixelMean {
 struct MeanPicture {
   uint32_t width = 0, height = 0;
   std::vector<PixelMean> pixels;
+  // Pixels that are not independent of each other: those in a square of `side` whose first column and row are before (x, y) = (0, 0)
+  // by these, modulo side.
+  uint32_t side = 1, column = 0, row = 0;
+
+  // The number of the square, of its column or row, that x or y lies in.
+  uint32_t square_column(uint32_t x) const { return (x + column) / side; }
+  uint32_t square_row(uint32_t y) const { return (y + row) / side; }
 };
 
 // Of two independent parts of a pixel's radiance.
 PixelMean sum_of(const PixelMean& a, const PixelMean& b);
 
 PixelMean pixel_mean(const PixelSums& sums, uint64_t samples);
-MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window);
+// side: of the squares of the whole picture whose pixels are not independent.
+MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side = 1);
 
 // Of a pixel's luminance: the mean of its samples, and their variance sigma^2 (unbiased; 0 for one sample). samples > 0.
 double mean_luminance(const PixelSums& sums, uint64_t samples);

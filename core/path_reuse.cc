@@ -1,6 +1,19 @@
 #include "core/path_reuse.h"
 
+#include <algorithm>
+
 namespace lanewise {
+namespace {
+
+bool has_flat_diffuse_surface(const Plan& plan) {
+  return std::ranges::any_of(plan.groups, [&](const PlanGroup& group) {
+    const bool mesh = group.first < plan.triangles;  // of one material
+    const auto bins = plan.prim_bin.begin() + group.first;
+    return !group.smooth && std::find(bins, bins + (mesh ? 1 : group.size), kDiffuse) != bins + (mesh ? 1 : group.size);
+  });
+}
+
+}  // namespace
 
 const char* why_no_reuse(const Plan& plan) {
   const Settings& settings = plan.settings;
@@ -10,10 +23,7 @@ const char* why_no_reuse(const Plan& plan) {
   if (sampled_lights(plan) == 0) return "no light";
   if (settings.adaptive_batch > 0 || settings.noise > 0) return "-a and --noise stop pixels one by one";
   if (settings.direct == Direct::kHemisphere) return "--direct hemisphere";
-  for (const ShadeStages& stages : plan.shade_stages) {
-    if (stages.bin == kDiffuse) return "";
-  }
-  return "no diffuse surface";
+  return has_flat_diffuse_surface(plan) ? "" : "no flat diffuse surface";
 }
 
 PixelSquares squares_of(const std::vector<uint32_t>& pixels, const uint32_t* slots, uint32_t width, uint32_t height) {

@@ -12,7 +12,7 @@
 // throughput of x_i: f cos / p, its albedo. So each L_j is shared out with weights that add up to 1. Every pixel's estimate stays
 // unbiased by itself; those of a square hang together. It costs a shadow ray for every other pixel of the square.
 //
-// Shared are vertices without shading normals of their own. What falls on x directly, and what comes from mirrors, glass, metal
+// Shared are vertices without shading normals of their own, and radiance that is a finite number. What falls on x directly, and what comes from mirrors, glass, metal
 // and emitters, stays with its path.
 #pragma once
 
@@ -23,8 +23,8 @@
 
 namespace lanewise {
 
-// A surface is flat where its normal, on either side, and its shading normal are no further apart: rounding.
-constexpr float kFlatness = 1e-6f;
+// Throughputs and densities below this are not shared: dividing by them would overflow.
+constexpr float kLeastShared = 1e-30f;
 
 constexpr uint32_t kTogetherSide = 2, kPathsTogether = kTogetherSide * kTogetherSide;
 

@@ -23,9 +23,6 @@ namespace {
 
 using glm::dvec3;
 
-// Corner normals this close to the face's own change no pixel; a mesh made of such is flat.
-constexpr double kFlatCosine = 1 - 1e-10;
-
 void copy(const dvec3& from, float* to) {
   for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
 }
@@ -193,7 +190,7 @@ class Planner {
     bool smooth = false;
     for (size_t k = 0; k < 3; ++k) {
       const dvec3 corner_normal = mesh.normals.empty() ? n : mesh.normals[index][k];
-      smooth |= std::abs(glm::dot(corner_normal, n)) < kFlatCosine;
+      smooth |= std::abs(glm::dot(corner_normal, n)) < 1 - 0.5 * kFlatness * kFlatness;
       for (int axis = 0; axis < 3; ++axis) plan_.prim_normals.push_back(static_cast<float>(corner_normal[axis]));
     }
     return smooth;

@@ -18,6 +18,10 @@ namespace lanewise {
 
 struct Scene;
 
+// A shading normal no further than this from the face's own, on either side, changes no pixel: the surface is flat. A mesh made of
+// such has no shading normals.
+constexpr float kFlatness = 1.5e-5f;
+
 // What a ray met, as the sort needs it: one bin per shading stage, the materials that take light samples first. kSky:
 // missed, where the plan has an environment; kFinished: missed where it has none, absorbed or roulette's.
 enum Bin : uint32_t { kDiffuse, kMicrofacet, kRoughGlass, kMirror, kGlass, kEmitter, kSky, kFinished, kBinCount };

@@ -1,6 +1,7 @@
 #include "core/probes.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <utility>
 
@@ -12,9 +13,11 @@ Probes::Probes(const Settings& settings, bool on, uint32_t side)
     : width_(settings.width), side_(side), window_(settings.window()), first_sample_(settings.first_sample) {
   if (!on) return;
   const uint64_t squares = uint64_t{window_.width} * window_.height / (side * side);
-  // A rank-1 lattice x + g y = 0 mod n, n a power of two, with g near n / golden ratio^2: no two probes are near each other.
+  // A rank-1 lattice x + g y = 0 mod n, n a power of two, with g near n / golden ratio^2: no two probes are near each other. g is
+  // odd, so that n rows have a probe in every column: the narrowest window has some.
+  constexpr std::array<uint32_t, std::bit_width(kMostSpacing)> kSteps = {0, 1, 1, 3, 5, 13};
   const uint32_t n = std::bit_floor(static_cast<uint32_t>(std::clamp<uint64_t>(squares / kWanted, 1, kMostSpacing)));
-  const uint32_t g = (3 * n + 4) / 8;
+  const uint32_t g = kSteps[std::bit_width(n) - 1];
   const uint32_t x_end = window_.x + window_.width, y_end = window_.y + window_.height;
   for (uint32_t row = window_.y / side; row * side < y_end; ++row) {
     for (uint32_t column = window_.x / side; column * side < x_end; ++column) {

@@ -159,11 +159,15 @@ class Rounds {
     const uint32_t square = side_ * side_;
     const size_t all = probes_.pixels().size();
     const size_t portion = square * std::max(1u, kWaves * settings_.wave / (count * square));
+    const auto whole_squares = [&](size_t end) {
+      while (end < all && probes_.continues(end)) ++end;
+      return std::min(end, all);
+    };
     std::atomic<uint64_t> rays{0};
     run_workers(
         workers_, (all + portion - 1) / portion,
         [&](size_t item, uint32_t worker) {
-          const size_t begin = item * portion, end = std::min(begin + portion, all);
+          const size_t begin = whole_squares(item * portion), end = whole_squares((item + 1) * portion);
           const auto first = probes_.pixels().begin();
           const std::vector<uint32_t> pixels(first + static_cast<ptrdiff_t>(begin),
                                              first + static_cast<ptrdiff_t>(end));
@@ -193,8 +197,8 @@ class Rounds {
     if (probes_.samples() > 1) {
       std::optional<MeanPicture> by_light;
       if (light_film_) by_light = light_picture(light_film_->film(), settings_.width, window);
-      error_ = estimate_error(mean_picture(film_, settings_.width, window), by_light ? &*by_light : nullptr, probes_,
-                              thread_count(settings_));
+      error_ = estimate_error(mean_picture(film_, settings_.width, window, side_), by_light ? &*by_light : nullptr,
+                              probes_, thread_count(settings_));
     }
     Exposure exposure{.image = develop(film_, settings_.width, window, light_film_ ? &light_film_->film() : nullptr),
                       .samples = sample_counts(film_, settings_.width, window),

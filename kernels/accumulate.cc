@@ -22,9 +22,17 @@ using DS = hn::Rebind<float, DD>;  // as many floats
 constexpr float kBright = 0x1p20f;
 
 struct Seen {
-  uint32_t invalid = 0;  // samples with a NaN, infinite or negative channel
+  uint32_t invalid = 0;  // samples, of those that go to the film, with a NaN, infinite or negative channel
   bool bright = false;   // one is above kBright
 };
+
+// By the index of a pixel in the batch.
+const uint32_t* SlotsOf(const Batch& batch) { return batch.slots ? batch.slots : batch.pixels; }
+
+bool GoesToFilm(const Batch& batch, uint64_t i) {
+  const uint64_t path = batch.first_path + i, group = batch.group;
+  return i < batch.paths && SlotsOf(batch)[path / (batch.samples * group) * group + path % group] != kNoPixel;
+}
 
 // Blackens invalid samples in place.
 Seen BlackenInvalid(const PathState& s) {
@@ -37,9 +45,10 @@ Seen BlackenInvalid(const PathState& s) {
     Vec3 L = LoadVec3(s.result_r, s.result_g, s.result_b, i);
     const MF good = hn::And(valid(L.x), hn::And(valid(L.y), valid(L.z)));
     if (HWY_UNLIKELY(!hn::AllTrue(d, good))) {
+      uint32_t bits[kLanes];
+      hn::Store(hn::BitCast(DU(), hn::VecFromMask(d, good)), DU(), bits);
       // Slots past the last path hold what earlier waves left there.
-      const MF counted = hn::FirstN(d, s.batch.paths - i);
-      seen.invalid += static_cast<uint32_t>(hn::CountTrue(d, hn::AndNot(good, counted)));
+      for (size_t lane = 0; lane < hn::Lanes(d); ++lane) seen.invalid += !bits[lane] && GoesToFilm(s.batch, i + lane);
       L = IfThenElseZero(good, L);
       StoreVec3(L, s.result_r, s.result_g, s.result_b, i);
     }
@@ -116,7 +125,7 @@ HWY_INLINE void Add(const Parts& parts, size_t begin, size_t end, Sum& sum) {
 template <size_t kGroup>
 void AddToFilm(const PathState& s, bool bright, PixelSums* film) {
   const Batch& batch = s.batch;
-  const uint32_t* slots = batch.slots ? batch.slots : batch.pixels;
+  const uint32_t* slots = SlotsOf(batch);
   const uint64_t group_paths = uint64_t{batch.samples} * kGroup;
   uint64_t pixel_index = batch.first_path / group_paths * kGroup;
   uint64_t left = group_paths - batch.first_path % group_paths;  // of the group's paths

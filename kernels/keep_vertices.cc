@@ -46,13 +46,13 @@ void KeepFirst(const Plan&, const PathState& s, Range range) {
 void KeepSecond(const Plan&, const PathState& s, Range range) {
   const DF d;
   const KeptVertices& kept = s.kept;
-  const VF zero = hn::Zero(d), one = Splat(1.0f);
+  const VF zero = hn::Zero(d), one = Splat(1.0f), least = Splat(kLeastShared);
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const VI own_slot = hn::BitCast(DI(), hn::Load(DU(), s.slot + i));
     const Vec3 first = GatherVec3(kept.n_x, kept.n_y, kept.n_z, own_slot);
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const VF most = MaxElement(beta);
-    const MF keeps = hn::And(hn::And(IsFlat(s, i), hn::Gt(most, zero)), hn::Gt(Dot(first, first), zero));
+    const MF keeps = hn::And(hn::And(IsFlat(s, i), hn::Gt(most, least)), hn::Gt(Dot(first, first), zero));
     const VI slot = SlotsWhere(s, i, keeps);
     const Vec3 n = NormalTowards(s, i, Neg(LoadVec3(s.d_x, s.d_y, s.d_z, i)));
     ScatterVec3(MulAdd(hn::Load(d, s.err + i), n, LoadVec3(s.o_x, s.o_y, s.o_z, i)), kept.y_x, kept.y_y, kept.y_z,

@@ -61,25 +61,29 @@ void ConnectPaths(const Plan&, const PathState& s, Range range) {
   }
 }
 
+HWY_INLINE MF IsFinite(const Vec3& v) {
+  return hn::And(hn::IsFinite(v.x), hn::And(hn::IsFinite(v.y), hn::IsFinite(v.z)));
+}
+
 // What each slot has to share: its radiance at y in c, and the weights with which its own pixel and its partners get it in l_pdf and
-// L. What is its own alone stays in kept.L.
+// L. What is its own alone stays in kept.L: all of an invalid sample, so that it is one, and its own pixel's.
 void WeighShares(const PathState& s, Range range) {
   const DF d;
   const KeptVertices& kept = s.kept;
   const VF zero = hn::Zero(d), one = Splat(1.0f);
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const VF gain = hn::Load(d, kept.gain + i);
-    const MF shares = hn::Gt(gain, zero);
-    const Vec3 result = LoadVec3(s.result_r, s.result_g, s.result_b, i);
+    const Vec3 result = LoadVec3(s.result_r, s.result_g, s.result_b, i), radiance = Scale(gain, result);
+    const MF shares = hn::And(hn::Gt(gain, zero), IsFinite(radiance));
     const VF own = Connect(kept, i, Partners(i, 0)).density;
     const Vec3 others = LoadVec3(s.L_r, s.L_g, s.L_b, i);
     const VF sum = hn::Add(own, hn::Add(others.x, hn::Add(others.y, others.z)));
     // By rounding, a vertex may not see what its own path came to.
-    const MF divides = hn::Gt(own, zero);
+    const MF divides = hn::Gt(own, Splat(kLeastShared));
     const VF scale = hn::IfThenElseZero(divides, hn::Div(one, sum));
     hn::Store(hn::IfThenElse(divides, hn::Mul(own, scale), one), d, s.l_pdf + i);
     StoreVec3(Scale(scale, others), s.L_r, s.L_g, s.L_b, i);
-    StoreVec3(IfThenElseZero(shares, Scale(gain, result)), s.c_r, s.c_g, s.c_b, i);
+    StoreVec3(IfThenElseZero(shares, radiance), s.c_r, s.c_g, s.c_b, i);
     const Vec3 before = LoadVec3(kept.L_r, kept.L_g, kept.L_b, i);
     StoreVec3(IfThenElse(shares, before, result), kept.L_r, kept.L_g, kept.L_b, i);
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/film.h"
+#include "core/path_reuse.h"
 #include "tests/kernel_harness.h"
 
 namespace lanewise {
@@ -67,6 +68,32 @@ TEST_CASE("accumulate: the same bits however samples are cut into waves; invalid
       CHECK(invalid == 3);
       CHECK(film == want);
     }
+  });
+}
+
+TEST_CASE("accumulate: by squares of pixels, of which nobody's samples count nowhere") {
+  constexpr uint32_t kSamples = 5, kTotal = 2 * kPathsTogether * kSamples;
+  const uint32_t n = kNoPixel;
+  const std::vector<uint32_t> pixels = {0, 1, 4, 5, 2, 3, 6, n}, slots = {1, n, 0, 2, n, 3, n, n};
+  test::for_each_target([&](const char* target) {
+    CAPTURE(target);
+    std::vector<PixelSums> film(4), want(4);
+    PathBuffer buffer(64);
+    PathState& s = buffer.state();
+    s.batch = {
+        .pixels = pixels.data(), .slots = slots.data(), .group = kPathsTogether, .samples = kSamples, .paths = kTotal};
+    uint32_t want_invalid = 0;
+    for (uint32_t i = 0; i < kTotal; ++i) {
+      const uint32_t slot = slots[i / (kSamples * kPathsTogether) * kPathsTogether + i % kPathsTogether];
+      const bool invalid = i % 3 == 0;
+      s.result_r[i] = s.result_g[i] = s.result_b[i] = invalid ? NAN : static_cast<float>(i);
+      if (slot == n) continue;
+      want_invalid += invalid;
+      const float value = invalid ? 0 : static_cast<float>(i);
+      want[slot].add(value, value, value);
+    }
+    CHECK(accumulate(s, film.data()) == want_invalid);
+    CHECK(film == want);
   });
 }
 

@@ -57,6 +57,47 @@ TEST_CASE("error estimate: a calm pixel beside noisy ones is no better known tha
   CHECK(likely_value(scene, 1, 1, scene.pixels[4])[0] == doctest::Approx(1));
 }
 
+TEST_CASE("error estimate: pixels of one square are no neighbours, and hang together") {
+  MeanPicture scene = flat(4, 4, 1, 1e-2f);
+  scene.side = 2, scene.column = 1, scene.row = 1;                       // squares from (1, 1) on
+  for (const size_t i : {5, 6, 9, 10}) scene.pixels[i].rgb = {9, 9, 9};  // one of them, which chance has made bright
+  for (PixelMean& pixel : scene.pixels) pixel.variance = 100;
+  CHECK(likely_value(scene, 1, 1, scene.pixels[5])[0] == doctest::Approx(1));
+  scene.side = 1;
+  CHECK(likely_value(scene, 1, 1, scene.pixels[5])[0] > 2);
+
+  // An interval of a quarter of the terms is twice as wide; the value is the same. All squares are alike in themselves.
+  MeanPicture calm = flat(64, 64, 0.49f, 0);
+  const auto square = [](size_t i) {
+    const double value = (i % 64 / 2 * 7 + i / 128 * 3) % 11 == 0 ? 1 : 1e-9;
+    return std::array<double, 3>{value, value, value};
+  };
+  const ErrorEstimate alone = estimate_error(calm, square, 2);
+  calm.side = 2;
+  const ErrorEstimate together = estimate_error(calm, square, 2);
+  CHECK(together.mrse == doctest::Approx(alone.mrse));
+  const auto variance = [](const ErrorEstimate& e) {
+    return std::pow(std::log(e.high / e.mrse) / 1.96, 2) - 0.05 * 0.05;
+  };
+  CHECK(variance(together) == doctest::Approx(4 * variance(alone)).epsilon(0.01));
+}
+
+TEST_CASE("error estimate: the narrowest window has probes, in whole squares of its own") {
+  for (const uint32_t side : {1u, 2u}) {
+    for (const uint32_t width : {1u, 2u, 3u, 5u, 6u}) {
+      Settings settings;
+      settings.width = 640, settings.height = 5000;
+      settings.crop = Window{37, 11, width, 4900};
+      const Probes probes(settings, true, side);
+      CAPTURE(width);
+      CHECK(probes.pixels().size() >= size_t{width} * 4900 / Probes::kMostSpacing * 9 / 10);
+      size_t squares = 0;
+      for (size_t i = 0; i < probes.pixels().size(); ++i) squares += !probes.continues(i);
+      CHECK(squares * side * side >= probes.pixels().size());
+    }
+  }
+}
+
 TEST_CASE("error estimate: exact squares give their relative mean, and a calm picture no error") {
   const MeanPicture scene = flat(20, 10, 0.49f, 0);
   const auto square = [](size_t) { return std::array<double, 3>{0.01, 0.02, 0.03}; };

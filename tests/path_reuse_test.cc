@@ -82,7 +82,20 @@ TEST_CASE("path reuse: where there are diffuse surfaces, and why not elsewhere")
   for (Material& material : metal.materials) {
     if (material.kind == Material::Kind::kDiffuse) material = metal.materials[test::kGold];
   }
-  CHECK(why_none(small(), metal) == "no diffuse surface");
+  CHECK(why_none(small(), metal) == "no flat diffuse surface");
+  Scene smooth = test::test_scene();
+  smooth.spheres.clear();
+  const auto facing = [](double z, uint32_t material) {
+    Mesh mesh;
+    mesh.material = material;
+    mesh.positions = {{-1, -1, z}, {1, -1, z}, {0, 1, z}};
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+  };
+  smooth.meshes = {facing(0.5, test::kWhite), facing(1, test::kCeilingLight)};
+  CHECK(why_none(small(), smooth).empty());
+  smooth.meshes[0].normals = {{glm::dvec3(0.6, 0, 0.8), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, 1)}};
+  CHECK(why_none(small(), smooth) == "no flat diffuse surface");
 }
 
 TEST_CASE("path reuse: the wave's picture is the scalar path tracer's") {

@@ -26,7 +26,8 @@ struct RenderReport {
 };
 
 // For --stats: scene, command, version, width, height, spp (the most of a pixel), max_depth, seed, threads, isa, wave, seconds {load, plan,
-// render, write}, samples, rays {camera, bounce, shadow, total}, rays_per_second, peak_rss_bytes, invalid_samples,
+// render, write}, samples (which may be more than the window's, where paths of pixels around it are used again), rays {camera,
+// bounce, shadow, total}, rays_per_second, peak_rss_bytes, invalid_samples,
 // paths_by_length [], time_budget (seconds) with --time, estimated_mrse {value, low, high} where there is one, stages [{name, calls, paths, seconds, lanes_live}] and plan [as decisions_json() gives it].
 std::string stats_json(const RenderReport& report);
 

@@ -73,7 +73,8 @@ Path<float> random_vertex(Rng& rng, uint32_t slot) {
   LANEWISE_SET_VEC3(p, d, random_unit(rng));
   LANEWISE_SET_RGB(p, beta, random_rgb(rng));
   LANEWISE_SET_RGB(p, L, random_rgb(rng));
-  if (rng() % 16 == 0) p.beta_r = p.beta_g = p.beta_b = 0;
+  const uint32_t faint = rng() % 16;
+  if (faint < 2) LANEWISE_SET_RGB(p, beta, Vec3<float>(faint == 0 ? 0 : kLeastShared / 2));
   p.err = 1e-5f;
   return p;
 }
@@ -203,6 +204,7 @@ double share_paths_error(uint32_t paths, uint32_t seed) {
   KeptPaths all(paths);
   PathState& s = all.state();
   std::vector<char> grazes;
+  const float bad[] = {NAN, -NAN, INFINITY};
   for (uint32_t i = 0; i < all.paths(); i += kPathsTogether) {
     grazes.push_back(rng() % 2);
     std::array<KeptPath<float>, kPathsTogether> square = random_square(rng, grazes.back());
@@ -211,6 +213,7 @@ double share_paths_error(uint32_t paths, uint32_t seed) {
       if (grazes.back() && k.f_r > 0) k.f_r = k.f_g = k.f_b = 1;
     }
     put_square(all, i, square, rng);
+    if (!grazes.back() && rng() % 4 == 0) s.result_g[i + rng() % kPathsTogether] = bad[rng() % std::size(bad)];
   }
   std::vector<Vec3<double>> before;
   for (uint32_t i = 0; i < all.paths(); ++i) before.emplace_back(s.result_r[i], s.result_g[i], s.result_b[i]);
@@ -235,6 +238,7 @@ double share_paths_error(uint32_t paths, uint32_t seed) {
     Vec3<double> all_of_it(0), sum(0);
     for (uint32_t k = 0; k < kPathsTogether; ++k) {
       want[k] = before[i + k];
+      if (!std::isfinite(before[i + k].y)) continue;
       all_of_it += square[k].gain > 0 ? LANEWISE_RGB(square[k], L) + square[k].gain * before[i + k] : before[i + k];
     }
     reference::share_paths(square, want, [&](uint32_t first, uint32_t second, const Vec3<double>&) {
@@ -243,6 +247,8 @@ double share_paths_error(uint32_t paths, uint32_t seed) {
     for (uint32_t k = 0; k < kPathsTogether; ++k) {
       const Vec3<double> got(s.result_r[i + k], s.result_g[i + k], s.result_b[i + k]);
       sum += got;
+      if (std::isfinite(got.y) != std::isfinite(before[i + k].y)) return HUGE_VAL;  // stays with its own pixel
+      if (!std::isfinite(got.y)) continue;
       if (!grazes[i / kPathsTogether]) worst = std::max(worst, largest(got - want[k]) / (kUlp * largest(all_of_it)));
     }
     if (grazes[i / kPathsTogether]) worst = std::max(worst, largest(sum - all_of_it) / (kUlp * largest(all_of_it)));

@@ -42,7 +42,7 @@ template <class T>
 void keep_second(Path<T>& p, KeptPath<T>& kept) {
   const Vec3<T> beta = LANEWISE_RGB(p, beta);
   const T most = std::max({beta.x, beta.y, beta.z});
-  if (!is_flat(p) || most == 0 || LANEWISE_VEC3(kept, n) == Vec3<T>(0)) return;
+  if (!is_flat(p) || !(most > T(kLeastShared)) || LANEWISE_VEC3(kept, n) == Vec3<T>(0)) return;
   const Vec3<T> n = normal_towards(p, -LANEWISE_VEC3(p, d));
   LANEWISE_SET_VEC3(kept, y, LANEWISE_VEC3(p, o) + p.err * n);
   LANEWISE_SET_VEC3(kept, m, n);

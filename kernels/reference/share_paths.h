@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "kernels/reference/keep_vertices.h"
 
@@ -25,8 +26,11 @@ T connect_paths(const KeptPath<T>& first, const KeptPath<T>& second, Vec3<T>& l)
 template <class T, class Sees>
 void share_paths(const Square<T>& kept, std::array<Vec3<T>, kPathsTogether>& results, const Sees& sees) {
   std::array<Vec3<T>, kPathsTogether> got{};
+  std::array<bool, kPathsTogether> shares{};
   for (uint32_t j = 0; j < kPathsTogether; ++j) {
-    if (kept[j].gain == 0) continue;
+    const Vec3<T> radiance = kept[j].gain * results[j];
+    shares[j] = kept[j].gain > 0 && std::isfinite(radiance.x) && std::isfinite(radiance.y) && std::isfinite(radiance.z);
+    if (!shares[j]) continue;
     std::array<T, kPathsTogether> weights{};
     T sum = 0;
     for (uint32_t i = 0; i < kPathsTogether; ++i) {
@@ -35,11 +39,11 @@ void share_paths(const Square<T>& kept, std::array<Vec3<T>, kPathsTogether>& res
       if (i != j && weights[i] > 0 && !sees(i, j, l)) weights[i] = 0;
       sum += weights[i];
     }
-    if (weights[j] == 0) weights = {}, weights[j] = sum = 1;
-    for (uint32_t i = 0; i < kPathsTogether; ++i) got[i] += weights[i] / sum * (kept[j].gain * results[j]);
+    if (!(weights[j] > T(kLeastShared))) weights = {}, weights[j] = sum = 1;
+    for (uint32_t i = 0; i < kPathsTogether; ++i) got[i] += weights[i] / sum * radiance;
   }
   for (uint32_t i = 0; i < kPathsTogether; ++i) {
-    const Vec3<T> own = kept[i].gain > 0 ? LANEWISE_RGB(kept[i], L) : results[i];
+    const Vec3<T> own = shares[i] ? LANEWISE_RGB(kept[i], L) : results[i];
     results[i] = own + LANEWISE_RGB(kept[i], f) * got[i];
   }
 }
