@@ -114,9 +114,10 @@ std::string why_so(const Plan& plan, Stage stage) {
   const bool trees = !plan.triangle_tree.nodes.empty() || !plan.sphere_tree.nodes.empty();
   switch (stage) {
     case Stage::kGenerate:
-      return settings.lens_radius > 0
-                 ? "a thin lens, sharp at " + distance_text(settings.focal_distance) + ": a point of it for every path"
-                 : "a pinhole: no lens is sampled";
+      return (settings.lens_radius > 0
+                  ? "a thin lens, sharp at " + distance_text(settings.focal_distance) + ": a point of it for every path"
+                  : std::string("a pinhole: no lens is sampled")) +
+             (settings.allocation == Allocation::kNoise ? "; more samples where a pilot finds noise" : "");
     case Stage::kIntersect:
     case Stage::kOcclude:
     case Stage::kOccludeConnection:

@@ -36,6 +36,7 @@ std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Wind
 }
 
 PixelMean pixel_mean(const PixelSums& sums, uint64_t samples) {
+  if (samples == 0) return {};
   const double scale = 1 / static_cast<double>(samples);
   return {{static_cast<float>(sums.r.as<double>() * scale), static_cast<float>(sums.g.as<double>() * scale),
            static_cast<float>(sums.b.as<double>() * scale)},

@@ -54,7 +54,7 @@ struct MeanPicture {
 // Of two independent parts of a pixel's radiance.
 PixelMean sum_of(const PixelMean& a, const PixelMean& b);
 
-PixelMean pixel_mean(const PixelSums& sums, uint64_t samples);
+PixelMean pixel_mean(const PixelSums& sums, uint64_t samples);  // of none: black
 // side: of the squares of the whole picture whose pixels are not independent.
 MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side = 1);
 

@@ -9,8 +9,8 @@
 
 namespace lanewise {
 
-Probes::Probes(const Settings& settings, bool on, uint32_t side)
-    : width_(settings.width), side_(side), window_(settings.window()), first_sample_(settings.first_sample) {
+Probes::Probes(const Settings& settings, const SampleShares& shares, bool on, uint32_t side)
+    : width_(settings.width), side_(side), window_(settings.window()), shares_(shares) {
   if (!on) return;
   const uint64_t squares = uint64_t{window_.width} * window_.height / (side * side);
   // A rank-1 lattice x + g y = 0 mod n, n a power of two, with g near n / golden ratio^2: no two probes are near each other. g is
@@ -29,7 +29,17 @@ Probes::Probes(const Settings& settings, bool on, uint32_t side)
       }
     }
   }
+  std::ranges::stable_sort(pixels_, {}, [&](uint32_t pixel) { return shares_.share(pixel); });
   sums_.resize(pixels_.size());
+}
+
+size_t Probes::end_of_portion(size_t begin, size_t most) const {
+  size_t end = begin;
+  while (end < pixels_.size() && shares_.share(pixels_[end]) == shares_.share(pixels_[begin]) &&
+         (end < begin + most || continues(end))) {
+    ++end;
+  }
+  return end;
 }
 
 bool Probes::continues(size_t probe) const {
@@ -51,17 +61,23 @@ void Probes::save(SavedRender& saved) const {
   Film film(size_t{width_} * (window_.y + window_.height));
   for (size_t i = 0; i < pixels_.size(); ++i) {
     film.sums[pixels_[i]] = sums_[i];
-    film.samples[pixels_[i]] = samples_;
+    film.samples[pixels_[i]] = drawn(i);
   }
   saved.put_film("probes", width_, film);
 }
 
-void Probes::load(const SavedRender& saved) {
+void Probes::load(const SavedRender& saved, uint64_t most) {
   if (pixels_.empty() || !saved.has_film("probes")) return;
   Film film(size_t{width_} * (window_.y + window_.height));
   saved.get_film("probes", width_, film);
-  for (size_t i = 0; i < pixels_.size(); ++i) sums_[i] = film.sums[pixels_[i]];
-  samples_ = film.samples[pixels_[0]];
+  samples_ = most;
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    sums_[i] = film.sums[pixels_[i]];
+    samples_ = std::min(samples_, shares_.samples_for(pixels_[i], film.samples[pixels_[i]]));
+  }
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    saved.check(film.samples[pixels_[i]] == drawn(i), "damaged: its probes have not the samples of one picture");
+  }
 }
 
 }  // namespace lanewise

@@ -1,5 +1,6 @@
 #include "core/render_identity.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "core/fnv.h"
@@ -65,6 +66,11 @@ std::string scene_hash(const Scene& scene) {
 // Before the number of what has a name on the command line: a number that says nothing to a user.
 constexpr char kChoice = '#';
 
+template <class T>
+std::string choice(T value) {
+  return kChoice + std::to_string(static_cast<int>(value));
+}
+
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", x);
@@ -74,7 +80,6 @@ std::string number(double x) {
 }  // namespace
 
 RenderIdentity render_identity(const Scene& scene, const Settings& s, const std::string& arithmetic) {
-  const auto choice = [](auto value) { return kChoice + std::to_string(static_cast<int>(value)); };
   const bool adaptive = s.adaptive_batch > 0 || s.noise > 0;
   return {{"scene", scene_hash(scene)},
           {"resolution", std::to_string(s.width) + " x " + std::to_string(s.height)},
@@ -82,6 +87,7 @@ RenderIdentity render_identity(const Scene& scene, const Settings& s, const std:
                        std::to_string(s.window().width) + " " + std::to_string(s.window().height)},
           {"seed", std::to_string(s.seed)},
           {"sampler", choice(s.sampler)},
+          {"allocation", choice(s.allocation)},
           {"view", choice(s.view)},
           {"lens-radius", number(s.lens_radius)},
           {"focal-distance", s.autofocus ? "auto" : number(s.focal_distance)},
@@ -101,6 +107,11 @@ RenderIdentity render_identity(const Scene& scene, const Settings& s, const std:
           {"noise", number(s.noise)},
           {"spp", adaptive ? std::to_string(s.spp) : "any"},
           {"arithmetic", arithmetic}};
+}
+
+bool all_have_the_same(const RenderIdentity& identity) {
+  const auto found = std::ranges::find(identity, "allocation", [](const auto& entry) { return entry.first; });
+  return found == identity.end() || found->second == choice(Allocation::kEven);
 }
 
 std::string arithmetic_of(const std::string& isa) {

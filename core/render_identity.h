@@ -16,6 +16,9 @@ namespace lanewise {
 using RenderIdentity = std::vector<std::pair<std::string, std::string>>;
 RenderIdentity render_identity(const Scene& scene, const Settings& settings, const std::string& arithmetic);
 
+// Whether all pixels have the same number of samples, where it is not their noise that says how many.
+bool all_have_the_same(const RenderIdentity& identity);
+
 // The instruction sets whose kernels give the same bits have the same name here.
 std::string arithmetic_of(const std::string& isa);
 

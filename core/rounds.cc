@@ -5,10 +5,12 @@
 #include <cmath>
 #include <map>
 
+#include "core/dimensions.h"
 #include "core/error_estimate.h"
 #include "core/film.h"
 #include "core/pieces.h"
 #include "core/probes.h"
+#include "core/sample_shares.h"
 #include "core/stats.h"
 #include "core/tile.h"
 #include "core/workers.h"
@@ -28,23 +30,24 @@ class Rounds {
         film_(size_t{settings.width} * settings.height),
         light_(light),
         side_(side),
-        probes_(settings, settings.estimate_error, side) {
+        shares_(shares()),
+        probes_(settings, shares_, settings.estimate_error, side) {
     if (light_) light_film_.emplace(film_.sums.size());
     if (!control.resume) return;
-    control.resume->get_picture(settings, film_);
+    control.resume->get_picture(settings, shares_, film_);
+    done_ = whole_samples();
     if (light_) resume_light(*control.resume);
-    probes_.load(*control.resume);
-    done_ = least_samples();
-    control.resume->check(probes_.samples() <= done_, "damaged: more probes than samples");
+    probes_.load(*control.resume, done_);
   }
 
   Exposure expose() {
     draw_probes();
     while (const uint32_t count = next_round()) {
       const double begin = intervals_.elapsed();
-      const bool whole = draw_light(done_ + count) && draw_tiles(done_ + count);
-      if (whole) done_ += count;
-      if (!whole || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
+      whole_ = false;
+      whole_ = draw_light(done_ + count) && draw_tiles(done_ + count);
+      if (whole_) done_ += count;
+      if (!whole_ || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
       draw_probes();
       seconds_per_sample_ = (intervals_.elapsed() - begin) / count;
       if (done_ < settings_.spp && (control_.progress || timed())) close();
@@ -60,9 +63,47 @@ class Rounds {
     saved.get_film("light", settings_.width, film);
     const std::vector<uint64_t> passes = sample_counts(film, settings_.width, settings_.window());
     const bool even = std::ranges::all_of(passes, [&](uint64_t n) { return n == passes[0]; });
-    saved.check(even && passes[0] <= settings_.spp && passes[0] >= least_samples(),
+    // Small shares of some more samples may be no more: then light paths tell.
+    if (!shares_.even()) done_ = std::min(done_, passes[0]);
+    saved.check(even && passes[0] <= settings_.spp && passes[0] >= done_,
                 "damaged: its passes of light paths cannot be");
     std::ranges::fill(film.samples, passes[0]);
+  }
+
+  // Those that the samples so far have. If there are none, by a pilot: if that is asked for, and leaves most of the time.
+  SampleShares shares() {
+    constexpr double kMostOfTime = 0.125;
+    const SampleShares same(settings_.first_sample);
+    if (settings_.allocation == Allocation::kEven) return same;
+    if (const SavedRender* saved = control_.resume) {
+      saved->check_area(settings_.window());
+      if (SampleShares::are_in(*saved)) return {settings_.first_sample, settings_.width, settings_.height, *saved};
+      bool begun = false;
+      saved->get<uint64_t>("picture.samples", settings_.width, [&](size_t, uint64_t n) { begun |= n > 0; });
+      if (begun) return same;
+    }
+    draw_pilot();
+    const bool in_time = !timed() || intervals_.elapsed() <= kMostOfTime * settings_.seconds;
+    if (intervals_.stopped() || !in_time) return same;
+    return {settings_.first_sample, settings_.width, settings_.height, film_.sums.data()};
+  }
+
+  // Of the whole picture, whatever its window. The sums are for no other use.
+  void draw_pilot() {
+    Settings all = settings_;
+    all.crop = {};
+    const std::vector<Tile> tiles = make_tiles(all, 1);
+    std::atomic<uint64_t> rays{0};
+    run_workers(
+        workers_, tiles.size(),
+        [&](size_t item, uint32_t worker) {
+          if (intervals_.stopped()) return uint64_t{0};
+          for (const uint32_t pixel : tiles[item].pixels) film_.sums[pixel] = {};
+          rays += draw_(tiles[item].pixels, kPilotSample, 1, film_.sums.data(), worker);
+          return uint64_t{0};
+        },
+        [&](const Progress&) { report(0); });
+    rays_ += rays;
   }
 
   bool timed() const { return settings_.seconds > 0; }
@@ -84,41 +125,75 @@ class Rounds {
     return static_cast<uint32_t>(std::min({count, longest, uint64_t{kLongestRound}}));
   }
 
-  // Of the window's pixels.
-  uint64_t least_samples() const {
-    const std::vector<uint64_t> counts = sample_counts(film_, settings_.width, settings_.window());
-    return *std::min_element(counts.begin(), counts.end());
+  // f(pixel) for those of the window.
+  template <class F>
+  void for_each_pixel(const F& f) const {
+    const Window window = settings_.window();
+    for (uint32_t y = window.y; y < window.y + window.height; ++y) {
+      for (uint32_t x = window.x; x < window.x + window.width; ++x) f(y * settings_.width + x);
+    }
   }
 
-  // Tiles of the pixels that have fewer samples than that, each of pixels with the same number of them.
+  // The samples that all pixels have their shares of.
+  uint64_t whole_samples() const {
+    uint64_t least = settings_.spp;
+    for_each_pixel([&](uint32_t i) { least = std::min(least, shares_.samples_for(i, film_.samples[i])); });
+    return least;
+  }
+
+  // Of any pixel.
+  uint64_t least_samples() const {
+    uint64_t least = kMaxSpp;
+    for_each_pixel([&](uint32_t i) { least = std::min(least, film_.samples[i]); });
+    return least;
+  }
+
+  // Tiles, or what is near each other of some, of the pixels that have less than their shares of that, all of a tile with as many
+  // samples and as many to come. They are of a wave or more, if that leaves work for all workers.
   std::vector<Tile> tiles_behind(uint64_t samples) const {
+    constexpr uint64_t kPerWorker = 16;
+    const std::vector<Tile> tiles = make_tiles(settings_, static_cast<uint32_t>(samples - done_));
+    uint64_t paths = 0;
+    for_each_pixel([&](uint32_t i) { paths += paths_behind(i, samples); });
+    const uint64_t enough = std::min<uint64_t>(settings_.wave, paths / (kPerWorker * workers_));
     std::vector<Tile> behind;
-    for (const Tile& tile : make_tiles(settings_, static_cast<uint32_t>(samples - done_))) {
-      std::map<uint64_t, Tile> by_samples;
+    std::map<std::pair<uint64_t, uint64_t>, Tile> parts;  // by samples drawn, and to come
+    for (const Tile& tile : tiles) {
       for (const uint32_t pixel : tile.pixels) {
-        if (film_.samples[pixel] < samples) by_samples[film_.samples[pixel]].pixels.push_back(pixel);
+        if (const uint64_t more = paths_behind(pixel, samples))
+          parts[{film_.samples[pixel], more}].pixels.push_back(pixel);
       }
-      for (auto& [drawn, part] : by_samples) behind.push_back(std::move(part));
+      std::erase_if(parts, [&](auto& part) {
+        if (part.second.pixels.size() * part.first.second < enough) return false;
+        behind.push_back(std::move(part.second));
+        return true;
+      });
     }
+    for (auto& [counts, part] : parts) behind.push_back(std::move(part));
     return behind;
   }
+  uint64_t paths_behind(uint32_t pixel, uint64_t samples) const {
+    const uint64_t due = shares_.count(pixel, samples);
+    return due - std::min(film_.samples[pixel], due);
+  }
 
-  // Brings every pixel to that many samples. False if time was up, or the render was stopped, before that. The first sample is
-  // drawn whatever the time.
+  // Brings every pixel to its share of that many samples. False if time was up, or the render was stopped, before that. The first
+  // sample is drawn whatever the time.
   bool draw_tiles(uint64_t samples) {
     const auto count = static_cast<double>(samples - done_);
     const auto time_is_up = [&] { return timed() && drawing_time_left() <= 0; };
     return draw_pieces(
         workers_, intervals_, rays_, [&] { return tiles_behind(samples); },
         [&](const Tile& tile, uint32_t worker, uint64_t& rays) {
-          const uint64_t first = film_.samples[tile.pixels[0]];
+          const uint32_t any = tile.pixels[0];
+          const uint64_t first = film_.samples[any], due = shares_.count(any, samples);
           if (first > 0 && time_is_up()) return false;
           if (first == 0) {
             for (const uint32_t pixel : tile.pixels) film_.sums[pixel] = {};
           }
-          rays += draw_(tile.pixels, settings_.first_sample + first, static_cast<uint32_t>(samples - first),
-                        film_.sums.data(), worker);
-          for (const uint32_t pixel : tile.pixels) film_.samples[pixel] = samples;
+          rays += draw_(tile.pixels, shares_.first(any) + first, static_cast<uint32_t>(due - first), film_.sums.data(),
+                        worker);
+          for (const uint32_t pixel : tile.pixels) film_.samples[pixel] = due;
           return true;
         },
         [&](double share) { report(static_cast<double>(done_) + share * count); }, [&] { return state(); },
@@ -156,23 +231,24 @@ class Rounds {
   void draw_some_probes() {
     constexpr uint32_t kWaves = 4;  // enough that waves are full
     const uint32_t count = short_of(done_ - probes_.samples());
-    const uint32_t square = side_ * side_;
     const size_t all = probes_.pixels().size();
-    const size_t portion = square * std::max(1u, kWaves * settings_.wave / (count * square));
-    const auto whole_squares = [&](size_t end) {
-      while (end < all && probes_.continues(end)) ++end;
-      return std::min(end, all);
-    };
+    std::vector<size_t> cuts = {0};
+    while (cuts.back() < all) {
+      const uint32_t more = probes_behind(cuts.back(), count);
+      cuts.push_back(probes_.end_of_portion(cuts.back(), std::max(1u, kWaves * settings_.wave / std::max(more, 1u))));
+    }
     std::atomic<uint64_t> rays{0};
     run_workers(
-        workers_, (all + portion - 1) / portion,
+        workers_, cuts.size() - 1,
         [&](size_t item, uint32_t worker) {
-          const size_t begin = whole_squares(item * portion), end = whole_squares((item + 1) * portion);
+          const size_t begin = cuts[item], end = cuts[item + 1];
+          const uint32_t more = probes_behind(begin, count);
+          if (more == 0) return uint64_t{0};
           const auto first = probes_.pixels().begin();
           const std::vector<uint32_t> pixels(first + static_cast<ptrdiff_t>(begin),
                                              first + static_cast<ptrdiff_t>(end));
           probes_.exchange(film_, begin, end);
-          rays += draw_(pixels, probes_.next_sample(), count, film_.sums.data(), worker);
+          rays += draw_(pixels, probes_.next_sample(begin), more, film_.sums.data(), worker);
           probes_.exchange(film_, begin, end);
           return uint64_t{0};
         },
@@ -181,12 +257,20 @@ class Rounds {
     rays_ += rays;
   }
 
+  // Samples of a probe, if the picture gets so many more.
+  uint32_t probes_behind(size_t probe, uint32_t count) const {
+    const uint64_t due = shares_.count(probes_.pixels()[probe], probes_.samples() + count);
+    return static_cast<uint32_t>(due - probes_.drawn(probe));
+  }
+
   SavedRender state() const {
     SavedRender saved;
     saved.area = settings_.window();
     saved.put_film("picture", settings_.width, film_);
     if (light_film_) saved.put_film("light", settings_.width, light_film_->film());
     probes_.save(saved);
+    shares_.save(saved);
+    if (!shares_.even() && whole_) saved.numbers[kWholeSamples] = done_;
     return saved;
   }
 
@@ -194,7 +278,7 @@ class Rounds {
   Exposure close() {
     const double begin = intervals_.elapsed();
     const Window window = settings_.window();
-    if (probes_.samples() > 1) {
+    if (probes_.samples() > 1 && least_samples() > 1) {
       std::optional<MeanPicture> by_light;
       if (light_film_) by_light = light_picture(light_film_->film(), settings_.width, window);
       error_ = estimate_error(mean_picture(film_, settings_.width, window, side_), by_light ? &*by_light : nullptr,
@@ -224,14 +308,16 @@ class Rounds {
   Intervals intervals_;
   double closing_ = 0;             // seconds that close() takes, to be kept for the last one
   double seconds_per_sample_ = 0;  // of each pixel, in the last round; 0: there was none yet
-  uint64_t done_ = 0;              // samples that every pixel has
+  uint64_t done_ = 0;              // samples that every pixel has its share of
+  bool whole_ = false;             // no pixel has more, nor do light paths
   uint64_t rays_ = 0;
   Film film_;
   LightPathDraw* light_;
   std::optional<LightFilm> light_film_;
   uint32_t side_;  // of squares of pixels
-  Probes probes_;
   std::optional<ErrorEstimate> error_;
+  SampleShares shares_;
+  Probes probes_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// -s and --time: every pixel gets the same number of samples, in rounds over the whole picture.
+// -s and --time: every pixel gets the same number of samples, or its share of them, in rounds over the whole picture.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,9 @@
 #include "core/settings.h"
 
 namespace lanewise {
+
+// Number in a SavedRender, where pixels have their shares and no more of so many samples: how many.
+constexpr const char* kWholeSamples = "whole-samples";
 
 // Where time is given: how many samples of each pixel the next round draws, of `most` in all. done: so far, of each pixel;
 // fits: how many more there is time for, at the rate of the last round. Doubles, as sequences of low discrepancy have it, and

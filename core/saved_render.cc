@@ -43,14 +43,15 @@ Film SavedRender::own_film(const std::string& name) const {
   return film;
 }
 
-bool SavedRender::has_film(const std::string& name) const {
-  return std::ranges::any_of(channels, [&](const Channel& c) { return c.name == name + ".samples.0"; });
+bool SavedRender::has(const std::string& name) const {
+  return std::ranges::any_of(channels, [&](const Channel& c) { return c.name == name + ".0"; });
 }
 
-void SavedRender::get_picture(const Settings& settings, Film& film) const {
+void SavedRender::get_picture(const Settings& settings, const SampleShares& shares, Film& film) const {
   check_area(settings.window());
   get_film("picture", settings.width, film);
-  const bool more = std::ranges::any_of(film.samples, [&](uint64_t n) { return n > settings.spp; });
+  bool more = false;
+  for (uint32_t i = 0; i < film.samples.size(); ++i) more |= film.samples[i] > shares.count(i, settings.spp);
   check(!more, "it has more samples than are asked for");
 }
 

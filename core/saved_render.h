@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/film.h"
+#include "core/sample_shares.h"
 #include "core/settings.h"
 #include "core/types.h"
 
@@ -50,9 +51,10 @@ class SavedRender {
   // Sums and numbers of samples, of a picture that wide; where there are no samples, sums are taken for nothing whatever they are.
   void put_film(const std::string& name, uint32_t width, const Film& film) { put_film_at(area, name, width, film); }
   void get_film(const std::string& name, uint32_t width, Film& film) const { get_film_at(area, name, width, film); }
-  bool has_film(const std::string& name) const;
-  // The film "picture" of a render with these settings, of as many samples at most as they ask for.
-  void get_picture(const Settings& settings, Film& film) const;
+  bool has(const std::string& name) const;
+  bool has_film(const std::string& name) const { return has(name + ".samples"); }
+  // The film "picture" of a render with these settings, of as many samples of each pixel at most as they ask for.
+  void get_picture(const Settings& settings, const SampleShares& shares, Film& film) const;
 
   // The same of the window alone.
   void put_own_film(const std::string& name, const Film& film) { put_film_at(own(), name, area.width, film); }

@@ -24,7 +24,7 @@ class Adaptive {
         control_(control),
         intervals_(control),
         film_(size_t{settings.width} * settings.height) {
-    if (control.resume) control.resume->get_picture(settings, film_);
+    if (control.resume) control.resume->get_picture(settings, SampleShares(settings.first_sample), film_);
   }
 
   Exposure expose(uint32_t workers) {

@@ -12,6 +12,7 @@ enum class Direct { kMis, kLight, kBsdf, kHemisphere };  // how direct light is 
 enum class BsdfSampling { kVndf, kNdf, kCosine };        // how microfacets choose a direction
 enum class Accel { kPlan, kTree };  // where rays look for geometry: as the plan chooses; all in trees
 enum class Fresnel { kExact, kSchlick, kCourse };
+enum class Allocation { kEven, kNoise };  // which pixels get how many samples: see core/sample_shares.h
 enum class Sampler { kSobol, kRandom };  // where a path's numbers come from: see kernels/rng-inl.h
 
 // How the course program's microfacet lobe departs from Beckmann's with Smith's shadowing: kernels/microfacet-inl.h has the
@@ -35,7 +36,7 @@ struct Settings {
   uint32_t width = 480;
   uint32_t height = 360;
   Window crop;                 // -p: the part to render, within the picture; width 0: all of it
-  uint64_t spp = 16;           // camera samples per pixel, in [1, kMaxSpp]; the most of them with -a, --noise, --time
+  uint64_t spp = 16;           // camera samples per pixel, in [1, kMaxSpp]; their mean with allocation; the most of them with -a, --noise, --time
   uint64_t first_sample = 0;   // --samples: the number of a pixel's first
   uint32_t light_samples = 1;  // per light at every vertex, >= 1
   uint32_t max_depth = 5;      // most scattering events on a path; 0: only light seen directly
@@ -44,6 +45,7 @@ struct Settings {
   uint32_t wave = 4096;                 // paths in flight per thread, a multiple of kLanes
   uint64_t seed = 0;
   Sampler sampler = Sampler::kSobol;
+  Allocation allocation = Allocation::kEven;  // not with -a or --noise, which have their own
   Accel accel = Accel::kPlan;
   View view = View::kFile;
   double lens_radius = 0;     // -b: of a thin lens, in scene units; 0: a pinhole

@@ -132,8 +132,19 @@ TEST_CASE(
 TEST_CASE("merge command: parts, in any order, are the picture of all samples") {
   if (test::nothing_to_test()) return;
   const TemporaryFolder folder;
-  REQUIRE(lanewise(folder, render({"-s", "40"}, "want.pfm")).exit_code == 0);
   const std::pair<const char*, const char*> parts[] = {{"a.exr", "0:7"}, {"b.exr", "7:24"}, {"c.exr", "24:40"}};
+  REQUIRE(lanewise(folder, render({"-s", "40", "--allocation", "noise"}, "want.pfm")).exit_code == 0);
+  for (const auto& [name, samples] : parts) {
+    REQUIRE(lanewise(folder, render({"--samples", samples, "--allocation", "noise"}, name)).exit_code == 0);
+  }
+  CHECK(lanewise(folder, {"merge", "c.exr", "a.exr", "b.exr", "-q", "-f", "got.pfm"}).exit_code == 0);
+  const bool same_by_noise = test::read_text(folder.file("got.pfm")) == test::read_text(folder.file("want.pfm"));
+  CHECK(same_by_noise);
+  REQUIRE(lanewise(folder, render({"--samples", "0:7"}, "even.exr")).exit_code == 0);
+  CHECK(lanewise(folder, {"merge", "even.exr", "b.exr", "-f", "no.exr"}).err ==
+        "lanewise: b.exr: cannot merge: allocation is another\n");
+
+  REQUIRE(lanewise(folder, render({"-s", "40"}, "want.pfm")).exit_code == 0);
   for (const auto& [name, samples] : parts) {
     REQUIRE(lanewise(folder, render({"--samples", samples}, name)).exit_code == 0);
   }

@@ -88,7 +88,7 @@ TEST_CASE("error estimate: the narrowest window has probes, in whole squares of 
       Settings settings;
       settings.width = 640, settings.height = 5000;
       settings.crop = Window{37, 11, width, 4900};
-      const Probes probes(settings, true, side);
+      const Probes probes(settings, SampleShares(0), true, side);
       CAPTURE(width);
       CHECK(probes.pixels().size() >= size_t{width} * 4900 / Probes::kMostSpacing * 9 / 10);
       size_t squares = 0;
@@ -192,9 +192,9 @@ TEST_CASE("error estimate: of a rendered picture, with either sampler") {
 TEST_CASE("probes: one pixel in 32, fewer apart in small pictures, all within the window") {
   Settings settings = picture(16);
   settings.width = 640, settings.height = 480;
-  CHECK(Probes(settings, true).pixels().size() == 640 * 480 / 32);
+  CHECK(Probes(settings, SampleShares(0), true).pixels().size() == 640 * 480 / 32);
   settings.crop = {100, 50, 33, 21};
-  const Probes probes(settings, true);
+  const Probes probes(settings, SampleShares(0), true);
   CHECK(probes.pixels().size() >= Probes::kWanted);
   for (size_t i = 0; i < probes.pixels().size(); ++i) {
     const uint32_t x = probes.pixels()[i] % 640, y = probes.pixels()[i] / 640;
@@ -203,8 +203,8 @@ TEST_CASE("probes: one pixel in 32, fewer apart in small pictures, all within th
     CHECK(probes.place(i) == size_t{y - 50} * 33 + x - 100);
   }
   settings.crop = {5, 5, 1, 1};
-  CHECK(Probes(settings, true).pixels().size() == 1);
-  CHECK(Probes(settings, false).pixels().empty());
+  CHECK(Probes(settings, SampleShares(0), true).pixels().size() == 1);
+  CHECK(Probes(settings, SampleShares(0), false).pixels().empty());
 }
 
 }  // namespace lanewise

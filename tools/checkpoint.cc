@@ -5,6 +5,7 @@
 #include <iostream>
 #include <utility>
 
+#include "core/rounds.h"
 #include "core/types.h"
 #include "tools/memory_limit.h"
 
@@ -23,9 +24,13 @@ std::pair<uint64_t, uint64_t> samples_of(const SavedRender& state, const Setting
   return {least, most};
 }
 
-// The samples that every pixel has; none if some have more than others, if light paths have more, or if they are in two halves.
+// The samples that every pixel has, or its share of them; none if some have more than others, if light paths have more, or if they are
+// in two halves.
 std::vector<SampleRange> ranges_of(const SavedRender& state, const Settings& settings) {
   if (settings.adaptive_batch > 0 || !state.has_film("picture")) return {};
+  if (state.numbers.contains(kWholeSamples)) {
+    return {{settings.first_sample, settings.first_sample + state.number(kWholeSamples)}};
+  }
   const auto [least, most] = samples_of(state, settings);
   if (least != most || most == 0) return {};
   bool even = true;

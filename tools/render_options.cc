@@ -161,6 +161,14 @@ void add_machine_flags(CLI::App& app, RenderOptions& o) {
       ->default_str("the best here");
 }
 
+void add_allocation_flag(CLI::App& app, RenderOptions& o) {
+  add_choice<Allocation>(
+      app, "--allocation", o.settings.allocation, {{"even", Allocation::kEven}, {"noise", Allocation::kNoise}},
+      "Which pixels get how many samples: all -s, or more where a pilot of one a pixel finds noise and "
+      "fewer where it is calm, -s on average; noise with --time")
+      ->default_str("even");
+}
+
 void add_time_flag(CLI::App& app, RenderOptions& o) {
   app.add_option_function<std::string>(
          "--time", [&o](const std::string& time) { o.settings.seconds = parse_duration(time).value_or(0); },
@@ -256,6 +264,7 @@ void add_scene_options(CLI::App& app, RenderOptions& o) {
 void add_render_options(CLI::App& app, RenderOptions& o) {
   add_scene_options(app, o);
   app.option_defaults()->group("Sampling");
+  add_allocation_flag(app, o);
   add_time_flag(app, o);
   app.option_defaults()->group("Machine");
   add_reference_flag(app, o);
@@ -310,6 +319,10 @@ void complete(RenderOptions& o, const CLI::App& app) {
   if (o.settings.seconds > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--time contradicts --adaptive (-a)");
     if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = kMaxSpp;
+    if (o.settings.noise == 0 && app.count("--allocation") == 0) o.settings.allocation = Allocation::kNoise;
+  }
+  if (o.settings.allocation == Allocation::kNoise && (o.settings.noise > 0 || o.settings.adaptive_batch > 0)) {
+    throw UsageError("--allocation noise contradicts --adaptive (-a) and --noise, which stop pixels one by one");
   }
   if (o.output.empty()) o.output = default_output(o.scene, o.is_part() ? ".exr" : ".png");
   if (o.is_part() && !is_exr(o.output)) throw UsageError("--samples: " + o.output + ": needs an .exr to write");

@@ -97,7 +97,8 @@ std::string stats_json(const RenderReport& r) {
 
 std::string samples_per_pixel(const RenderOptions& o, const RenderStats& stats) {
   const Settings& settings = o.settings;
-  if (settings.adaptive_batch == 0 && settings.noise == 0 && settings.seconds == 0) return std::to_string(settings.spp);
+  const bool fixed = settings.adaptive_batch == 0 && settings.noise == 0 && settings.seconds == 0;
+  if (fixed && settings.allocation == Allocation::kEven) return std::to_string(settings.spp);
   char mean[32];
   std::snprintf(mean, sizeof mean, "%.1f", stats.samples_per_pixel);
   return mean;
@@ -111,12 +112,15 @@ std::string summary(const RenderReport& r) {
   const bool adaptive = settings.adaptive_batch > 0 || settings.noise > 0;
   // Without -s, --time has no limit worth telling.
   const bool limited = settings.seconds == 0 || settings.spp < kMaxSpp;
-  if (adaptive || settings.seconds > 0)
-    text += samples_per_pixel(r.options, s) + (limited ? " of at most " : " samples");
-  if (limited) text += count_of(settings.spp, "sample");
-  text += " per pixel, " + std::string(settings.only_bounce ? "only bounce " : "depth ") +
-          std::to_string(settings.max_depth) + ", " + count_of(s.threads, "thread") +
-          (s.ranks.empty() ? "" : " of " + count_of(s.ranks.size(), "rank")) + ", " + r.isa + "\n";
+  const bool counted = adaptive || settings.seconds > 0;
+  const bool even = settings.allocation == Allocation::kEven;
+  if (counted) text += samples_per_pixel(r.options, s) + (limited ? " of at most " : " samples");
+  if (limited && (counted || even)) text += count_of(settings.spp, "sample");
+  if (!counted && !even) text += samples_per_pixel(r.options, s) + " samples";
+  text += std::string(" per pixel") + (even ? "" : " by its noise") + ", " +
+          std::string(settings.only_bounce ? "only bounce " : "depth ") + std::to_string(settings.max_depth) + ", " +
+          count_of(s.threads, "thread") + (s.ranks.empty() ? "" : " of " + count_of(s.ranks.size(), "rank")) + ", " +
+          r.isa + "\n";
   if (adaptive) {
     const std::string aim = settings.noise > 0
                                 ? "standard error of " + short_number(100 * settings.noise) + " %"
