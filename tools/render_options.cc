@@ -165,7 +165,7 @@ void add_allocation_flag(CLI::App& app, RenderOptions& o) {
   add_choice<Allocation>(
       app, "--allocation", o.settings.allocation, {{"even", Allocation::kEven}, {"noise", Allocation::kNoise}},
       "Which pixels get how many samples: all -s, or more where a pilot of one a pixel finds noise and "
-      "fewer where it is calm, -s on average; noise with --time")
+      "fewer where it is calm, -s on average; noise with --time in place of -s")
       ->default_str("even");
 }
 
@@ -318,8 +318,10 @@ void complete(RenderOptions& o, const CLI::App& app) {
   }
   if (o.settings.seconds > 0) {
     if (o.settings.adaptive_batch > 0) throw UsageError("--time contradicts --adaptive (-a)");
-    if (o.settings.noise == 0 && app.count("--spp") == 0) o.settings.spp = kMaxSpp;
-    if (o.settings.noise == 0 && app.count("--allocation") == 0) o.settings.allocation = Allocation::kNoise;
+    if (o.settings.noise == 0 && app.count("--spp") == 0) {
+      o.settings.spp = kMaxSpp;
+      if (app.count("--allocation") == 0) o.settings.allocation = Allocation::kNoise;
+    }
   }
   if (o.settings.allocation == Allocation::kNoise && (o.settings.noise > 0 || o.settings.adaptive_batch > 0)) {
     throw UsageError("--allocation noise contradicts --adaptive (-a) and --noise, which stop pixels one by one");
