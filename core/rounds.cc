@@ -148,26 +148,33 @@ class Rounds {
     return least;
   }
 
-  // Tiles, or what is near each other of some, of the pixels that have less than their shares of that, all of a tile with as many
-  // samples and as many to come. They are of a wave or more, if that leaves work for all workers.
+  // Tiles, or blocks of one share near each other, of the pixels that have less than their shares of that, all of a tile with as many
+  // samples and as many to come. They are of a wave or little more, if that leaves work for all workers.
   std::vector<Tile> tiles_behind(uint64_t samples) const {
     constexpr uint64_t kPerWorker = 16;
-    const std::vector<Tile> tiles = make_tiles(settings_, static_cast<uint32_t>(samples - done_));
+    std::vector<Tile> tiles = make_tiles(settings_, static_cast<uint32_t>(samples - done_));
     uint64_t paths = 0;
     for_each_pixel([&](uint32_t i) { paths += paths_behind(i, samples); });
     const uint64_t enough = std::min<uint64_t>(settings_.wave, paths / (kPerWorker * workers_));
     std::vector<Tile> behind;
     std::map<std::pair<uint64_t, uint64_t>, Tile> parts;  // by samples drawn, and to come
-    for (const Tile& tile : tiles) {
-      for (const uint32_t pixel : tile.pixels) {
-        if (const uint64_t more = paths_behind(pixel, samples))
-          parts[{film_.samples[pixel], more}].pixels.push_back(pixel);
-      }
+    const auto move_full_parts = [&] {
       std::erase_if(parts, [&](auto& part) {
         if (part.second.pixels.size() * part.first.second < enough) return false;
         behind.push_back(std::move(part.second));
         return true;
       });
+    };
+    for (Tile& tile : tiles) {
+      const auto block = [&](uint32_t pixel) { return shares_.block(pixel); };
+      std::ranges::stable_sort(tile.pixels, {}, block);
+      for (size_t i = 0; i < tile.pixels.size(); ++i) {
+        const uint32_t pixel = tile.pixels[i];
+        if (i > 0 && block(pixel) != block(tile.pixels[i - 1])) move_full_parts();
+        if (const uint64_t more = paths_behind(pixel, samples))
+          parts[{film_.samples[pixel], more}].pixels.push_back(pixel);
+      }
+      move_full_parts();
     }
     for (auto& [counts, part] : parts) behind.push_back(std::move(part));
     return behind;

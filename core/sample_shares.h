@@ -35,7 +35,9 @@ class SampleShares {
   void save(SavedRender& saved) const;  // of its area; nothing if they are even
 
   bool even() const { return eighths_.empty(); }
-  // Of the pixel, in eighths.
+  // The number of the pixel's block, all of one share.
+  size_t block(uint32_t pixel) const { return even() ? 0 : block_of(pixel); }
+  // The pixel's share, in eighths.
   uint32_t share(uint32_t pixel) const { return even() ? kEven : eighths_[block_of(pixel)]; }
 
   // Of a pixel (y * width + x): the number of its first sample, and how many it is to have where the picture has `samples` a pixel:

@@ -8,6 +8,7 @@ perf/results/error_estimate.{json,md,svg}; exits with 1 if a prediction is off b
 tools/build and tools/setup charts; takes some 15 minutes on two cores.
 """
 import argparse
+import itertools
 import json
 import pathlib
 import sys
@@ -31,11 +32,11 @@ def predictions(scene, arguments):
     own = stats['estimated_mrse']['value']
     rows = []
     for samples in arguments.samples:
-        for seed in range(1, arguments.seeds + 1):
-            picture, stats = render('-s', samples, '--seed', seed)
+        for seed, allocation in itertools.product(range(1, arguments.seeds + 1), ('even', 'noise')):
+            picture, stats = render('-s', samples, '--seed', seed, '--allocation', allocation)
             measured, predicted = picture_error.mrse(picture, truth) - own, stats['estimated_mrse']
-            rows.append({'scene': scene.stem, 'samples': samples, 'seed': seed, 'measured': measured, **predicted,
-                         'reference': own})
+            rows.append({'scene': scene.stem, 'samples': samples, 'allocation': allocation, 'seed': seed,
+                         'measured': measured, **predicted, 'reference': own})
             print(json.dumps(rows[-1]), flush=True)
     return rows
 
@@ -56,8 +57,8 @@ def page(rows, ends, command):
              f'{lanewise.machine()}; Lanewise {lanewise.version()}.', '', '![](error_estimate.svg)', '',
              f'Predicted and measured MRSE; {inside} of {len(rows)} measured ones lie in their 95% interval. Pictures of 320 x 240.',
              '']
-    lines += study.table(['scene', 'samples', 'seed', 'measured', 'predicted', '95%', 'predicted / measured'],
-                         [[r['scene'], str(r['samples']), str(r['seed']), f"{r['measured']:.4g}", f"{r['value']:.4g}",
+    lines += study.table(['scene', 'samples', 'allocation', 'seed', 'measured', 'predicted', '95%', 'predicted / measured'],
+                         [[r['scene'], str(r['samples']), r['allocation'], str(r['seed']), f"{r['measured']:.4g}", f"{r['value']:.4g}",
                            f"{r['low']:.4g} to {r['high']:.4g}", f"{r['value'] / r['measured']:.2f}"] for r in rows])
     lines += ['', 'When `--time` ends: seconds from the program\'s start to the end of rendering, 480 x 360.', '']
     lines += study.table(['scene', 'budget', 'seconds', 'off by', 'samples per pixel'],
