@@ -45,7 +45,7 @@ Seen BlackenInvalid(const PathState& s) {
     Vec3 L = LoadVec3(s.result_r, s.result_g, s.result_b, i);
     const MF good = hn::And(valid(L.x), hn::And(valid(L.y), valid(L.z)));
     if (HWY_UNLIKELY(!hn::AllTrue(d, good))) {
-      uint32_t bits[kLanes];
+      HWY_ALIGN uint32_t bits[kLanes];
       hn::Store(hn::BitCast(DU(), hn::VecFromMask(d, good)), DU(), bits);
       // Slots past the last path hold what earlier waves left there.
       for (size_t lane = 0; lane < hn::Lanes(d); ++lane) seen.invalid += !bits[lane] && GoesToFilm(s.batch, i + lane);
