@@ -55,9 +55,6 @@ constexpr uint64_t light_path_epoch(uint32_t light, uint64_t number, uint64_t pa
 // Where a second, independent estimate of a pixel begins to count its samples; so a first one has no more than these.
 constexpr uint64_t kSecondEstimate = uint64_t{1} << 63;
 
-// And where a pilot's begin, which no estimate has: see core/sample_shares.h.
-constexpr uint64_t kPilotSample = kSecondEstimate + (uint64_t{1} << 62);
-
 // A Sobol sequence is this long; a pixel's further samples come from further sequences, scrambled afresh. Samples
 // first .. first + 2^k - 1 are a net of it (at their best together) where first is a multiple of 2^k.
 constexpr uint32_t kSequenceBits = 16;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/image_compare.h"
 #include "core/probes.h"
 #include "core/workers.h"
 #include "kernels/kernels.h"
@@ -12,11 +13,13 @@
 namespace lanewise {
 namespace {
 
-constexpr double kLeastRadiance = 0.01;  // MRSE's
-
 // Relative standard error that likely_value() leaves in the estimate: measured on the course's scenes, see
 // perf/results/error_estimate.md.
 constexpr double kLikelyValueError = 0.05;
+
+// Of a picture's squared error to what its samples' variances say. More is chance: one bright path among few probes. Scrambled nets
+// are, where they do not help, as good as independent samples (Owen, Annals of Statistics 25, 1997).
+constexpr double kMostFactor = 1;
 
 template <class T>
 double luminance_of(const std::array<T, 3>& rgb) {
@@ -43,37 +46,40 @@ struct Sums {
 size_t square_columns(const MeanPicture& picture) { return picture.square_column(picture.width - 1) + size_t{1}; }
 size_t square_rows(const MeanPicture& picture) { return picture.square_row(picture.height - 1) + size_t{1}; }
 
-// Over the whole picture, a term for each of its squares, with the same bits for any number of threads.
-Sums sum_relative(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
-  std::vector<Sums> rows(square_rows(picture));
-  const auto sum_row = [&](size_t row, uint32_t) {
-    std::vector<double> terms(square_columns(picture));
-    const size_t begin = row * picture.side, end = begin + picture.side;
+// The sums over the whole picture, a term for each of its squares, of as many kinds of errors as f(x, y) gives: std::array of relative
+// squares. With the same bits for any number of threads.
+template <size_t kKinds, class F>
+std::array<Sums, kKinds> sum_squares(const MeanPicture& picture, uint32_t threads, const F& f) {
+  std::vector<std::array<Sums, kKinds>> rows(square_rows(picture));
+  for_each_row(threads, static_cast<uint32_t>(rows.size()), [&](uint32_t row) {
+    std::vector<std::array<double, kKinds>> terms(square_columns(picture));
+    const size_t begin = size_t{row} * picture.side, end = begin + picture.side;
     for (auto y = static_cast<uint32_t>(std::max<size_t>(begin, picture.row) - picture.row);
          y < std::min<size_t>(end - picture.row, picture.height); ++y) {
       for (uint32_t x = 0; x < picture.width; ++x) {
-        const size_t i = size_t{y} * picture.width + x;
-        const std::array<double, 3> square = squares(i);
-        if (square == std::array<double, 3>{}) continue;
-        terms[picture.square_column(x)] += relative(square, likely_value(picture, x, y, picture.pixels[i]));
+        const std::array<double, kKinds> kinds = f(x, y);
+        for (size_t k = 0; k < kKinds; ++k) terms[picture.square_column(x)][k] += kinds[k];
       }
     }
-    for (const double term : terms) rows[row].add(term);
-    return uint64_t{0};
-  };
-  run_workers(threads, rows.size(), sum_row, nullptr);
-  Sums all;
-  for (const Sums& row : rows) all.terms += row.terms, all.squares += row.squares;
+    for (const std::array<double, kKinds>& term : terms) {
+      for (size_t k = 0; k < kKinds; ++k) rows[row][k].add(term[k]);
+    }
+  });
+  std::array<Sums, kKinds> all{};
+  for (const std::array<Sums, kKinds>& row : rows) {
+    for (size_t k = 0; k < kKinds; ++k) all[k].terms += row[k].terms, all[k].squares += row[k].squares;
+  }
   return all;
 }
 
 // f(pixel) for the up to eight pixels around (x, y) that are independent of it.
 template <class F>
 void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
+  const uint32_t column = picture.square_column(x), row = picture.square_row(y);
   for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
+    const bool same_row = picture.square_row(j) == row;
     for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
-      const bool together =
-          picture.square_column(i) == picture.square_column(x) && picture.square_row(j) == picture.square_row(y);
+      const bool together = same_row && picture.square_column(i) == column;
       if (!together) f(picture.pixels[size_t{j} * picture.width + i]);
     }
   }
@@ -91,11 +97,12 @@ bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelM
     around += luminance_of(pixel.rgb);
   });
   if (neighbours == 0) return false;
+  const double lift = luminance_of(centre.rgb) - around / static_cast<double>(neighbours), lift2 = lift * lift;
+  const bool is_lift = lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
+  if (!is_lift) return false;
   auto* const median = variances.begin() + neighbours / 2;
   std::nth_element(variances.begin(), median, variances.begin() + neighbours);
-  if (centre.variance <= kOutlier * *median) return false;
-  const double lift = luminance_of(centre.rgb) - around / static_cast<double>(neighbours), lift2 = lift * lift;
-  return lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
+  return centre.variance > kOutlier * *median;
 }
 
 // variance: relative, of what the terms have been multiplied by.
@@ -130,7 +137,11 @@ std::array<double, 3> likely_value(const MeanPicture& picture, uint32_t x, uint3
 }
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
-  return with_interval(picture, sum_relative(picture, squares, threads), 0);
+  const auto relative_square = [&](uint32_t x, uint32_t y) {
+    const size_t i = size_t{y} * picture.width + x;
+    return std::array{relative(squares(i), likely_value(picture, x, y, picture.pixels[i]))};
+  };
+  return with_interval(picture, sum_squares<1>(picture, threads, relative_square)[0], 0);
 }
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* light, const Probes& probes,
@@ -145,23 +156,15 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
   const auto place = [&](size_t i) {
     return std::pair(static_cast<uint32_t>(i % picture.width), static_cast<uint32_t>(i / picture.width));
   };
-  const auto sum_variances = [&](bool fireflies) {
-    return sum_relative(
-        whole,
-        [&](size_t i) {
-          const auto [x, y] = place(i);
-          const double v = picture.pixels[i].variance;
-          if (is_firefly(picture, x, y, picture.pixels[i]) != fireflies) return std::array<double, 3>{};
-          return std::array<double, 3>{v, v, v};
-        },
-        threads);
-  };
-  const Sums calm = sum_variances(false), fireflies = sum_variances(true);
-  const auto light_variance = [&](size_t i) {
-    const double v = light->pixels[i].variance;
-    return std::array<double, 3>{v, v, v};
-  };
-  const Sums by_light = light ? sum_relative(whole, light_variance, threads) : Sums{};
+  const auto [calm, fireflies, by_light] = sum_squares<3>(whole, threads, [&](uint32_t x, uint32_t y) {
+    const size_t i = size_t{y} * picture.width + x;
+    const double variance = picture.pixels[i].variance, of_light = light ? light->pixels[i].variance : 0;
+    if (variance == 0 && of_light == 0) return std::array<double, 3>{};
+    const double to_relative = relative({1, 1, 1}, likely_value(whole, x, y, whole.pixels[i]));
+    const bool firefly = is_firefly(picture, x, y, picture.pixels[i]);
+    return std::array{firefly ? 0 : variance * to_relative, firefly ? variance * to_relative : 0,
+                      of_light * to_relative};
+  });
 
   // The ratio of what squared differences say to what variances say (Cochran, Sampling Techniques, 1977, ch. 6): bright paths
   // that chance has dealt to the probes are in both. Fireflies are left out, whose ratio is 1.
@@ -188,9 +191,10 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
   double factor = 1, variance = 0;
   if (by_variance > 0 && by_difference > 0) {
     const double n = static_cast<double>(terms.size());
-    factor = by_difference / by_variance;
+    const double ratio = by_difference / by_variance;
+    factor = std::min(ratio, kMostFactor);
     double residues = 0;
-    for (const auto& [d, v] : terms) residues += std::pow(d - factor * v, 2);
+    for (const auto& [d, v] : terms) residues += std::pow(d - ratio * v, 2);
     variance = n / std::max(n - 1, 1.0) * residues / (by_difference * by_difference);
   }
   const Sums all{factor * calm.terms + fireflies.terms + by_light.terms,

@@ -117,7 +117,7 @@ std::string why_so(const Plan& plan, Stage stage) {
       return (settings.lens_radius > 0
                   ? "a thin lens, sharp at " + distance_text(settings.focal_distance) + ": a point of it for every path"
                   : std::string("a pinhole: no lens is sampled")) +
-             (settings.allocation == Allocation::kNoise ? "; more samples where a pilot finds noise" : "");
+             (settings.allocation == Allocation::kNoise ? "; more samples where the first find noise" : "");
     case Stage::kIntersect:
     case Stage::kOcclude:
     case Stage::kOccludeConnection:

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/workers.h"
+
 namespace lanewise {
 
-Image develop(const Film& film, uint32_t width, const Window& window, const Film* light) {
+Image develop(const Film& film, uint32_t width, const Window& window, const Film* light, uint32_t threads) {
   Image image(window.width, window.height);
-  for (uint32_t y = 0; y < window.height; ++y) {
+  for_each_row(threads, window.height, [&](uint32_t y) {
     for (uint32_t x = 0; x < window.width; ++x) {
       const size_t i = size_t{window.y + y} * width + window.x + x;
       if (film.samples[i] == 0) continue;
@@ -22,7 +24,7 @@ Image develop(const Film& film, uint32_t width, const Window& window, const Film
       }
       for (size_t c = 0; c < 3; ++c) image.pixel(x, y)[c] = static_cast<float>(sum[c]);
     }
-  }
+  });
   return image;
 }
 
@@ -47,15 +49,15 @@ PixelMean sum_of(const PixelMean& a, const PixelMean& b) {
   return {{a.rgb[0] + b.rgb[0], a.rgb[1] + b.rgb[1], a.rgb[2] + b.rgb[2]}, a.variance + b.variance};
 }
 
-MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side) {
+MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side, uint32_t threads) {
   MeanPicture picture{window.width, window.height, {}, side, window.x % side, window.y % side};
-  picture.pixels.reserve(size_t{window.width} * window.height);
-  for (uint32_t y = 0; y < window.height; ++y) {
+  picture.pixels.resize(size_t{window.width} * window.height);
+  for_each_row(threads, window.height, [&](uint32_t y) {
     for (uint32_t x = 0; x < window.width; ++x) {
       const size_t i = size_t{window.y + y} * width + window.x + x;
-      picture.pixels.push_back(pixel_mean(film.sums[i], film.samples[i]));
+      picture.pixels[size_t{y} * window.width + x] = pixel_mean(film.sums[i], film.samples[i]);
     }
-  }
+  });
   return picture;
 }
 

@@ -29,8 +29,8 @@ struct Film {
 };
 
 // The mean of each pixel of the window, and how many samples it is of. width: of the whole picture. light: what light paths add,
-// of so many passes; null if there are none.
-Image develop(const Film& film, uint32_t width, const Window& window, const Film* light = nullptr);
+// of so many passes; null if there are none. Rows are shared out to threads.
+Image develop(const Film& film, uint32_t width, const Window& window, const Film* light, uint32_t threads);
 std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window);
 
 // The mean of a pixel's samples, and the variance of the mean's luminance, were they independent.
@@ -55,8 +55,8 @@ struct MeanPicture {
 PixelMean sum_of(const PixelMean& a, const PixelMean& b);
 
 PixelMean pixel_mean(const PixelSums& sums, uint64_t samples);  // of none: black
-// side: of the squares of the whole picture whose pixels are not independent.
-MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side = 1);
+// side: of the squares of the whole picture whose pixels are not independent. Rows are shared out to threads.
+MeanPicture mean_picture(const Film& film, uint32_t width, const Window& window, uint32_t side, uint32_t threads);
 
 // Of a pixel's luminance: the mean of its samples, and their variance sigma^2 (unbiased; 0 for one sample). samples > 0.
 double mean_luminance(const PixelSums& sums, uint64_t samples);

@@ -55,7 +55,8 @@ std::vector<SampleRange> ranges_of(const std::string& text) {
   for (std::string word; words >> word;) {
     const size_t colon = std::min(word.find(':'), word.size() - 1);
     const SampleRange r{number(word.substr(0, colon)), number(word.substr(colon + 1))};
-    if (r.begin >= r.end || (!ranges.empty() && r.begin <= ranges.back().end)) throw Error("damaged");
+    const bool in_order = ranges.empty() || ranges.back().end < r.begin;
+    if (!in_order || r.begin >= r.end || r.end > kMaxSpp) throw Error("damaged");
     ranges.push_back(r);
   }
   return ranges;
@@ -156,19 +157,35 @@ FilmFile read(const std::string& path) {
   return film;
 }
 
-// The samples of each pixel of a finished film are as many as its ranges have, or may be its share of them.
+// The samples of each pixel of a finished film are as many as its ranges have, or its share of them.
 void check_finished(const FilmFile& film) {
   if (film.ranges.empty()) throw Error("it is a checkpoint of a render that is not done");
   const uint64_t samples = samples_in(film.ranges);
   const auto check = [](bool holds) {
     if (!holds) throw Error("damaged (samples are missing)");
   };
-  const bool even = all_have_the_same(film.identity);
-  film.state.get<uint64_t>("picture.samples", film.width, [&](size_t, uint64_t n) {
-    check(even ? n == samples : SampleShares::may_be(n, samples, film.ranges.size()));
+  std::optional<SampleShares> shares(0);
+  if (!all_have_the_same(film.identity)) {
+    shares = SampleShares::saved(0, film.width, film.height, film.state);
+    if (!shares) throw Error("damaged (its shares of samples cannot be)");
+  }
+  film.state.get<uint64_t>("picture.samples", film.width, [&](size_t pixel, uint64_t n) {
+    const auto i = static_cast<uint32_t>(pixel);
+    for (const SampleRange& r : film.ranges) n -= shares->count(i, r.end) - shares->count(i, r.begin);
+    check(n == 0);
   });
   if (!film.state.has_film("light")) return;
   film.state.get<uint64_t>("light.samples", film.width, [&](size_t, uint64_t n) { check(n == samples); });
+}
+
+bool is_of_shares(const SavedRender::Channel& channel) {
+  return channel.name.starts_with(std::string(SampleShares::kSaved) + ".");
+}
+
+std::vector<SavedRender::Channel> shares_of(const SavedRender& state) {
+  std::vector<SavedRender::Channel> shares;
+  std::ranges::copy_if(state.channels, std::back_inserter(shares), is_of_shares);
+  return shares;
 }
 
 Film sum_of(Film film, const Film& more) {
@@ -252,7 +269,7 @@ FilmFile read_film(const std::string& path, bool finished) {
     if (finished) {
       check_finished(film);
       std::erase_if(film.state.channels, [](const SavedRender::Channel& c) {
-        return !c.name.starts_with("picture.") && !c.name.starts_with("light.");
+        return !c.name.starts_with("picture.") && !c.name.starts_with("light.") && !is_of_shares(c);
       });
     }
     film.state.path = path;
@@ -277,6 +294,10 @@ void merge_film(FilmFile& film, const FilmFile& other, const std::string& path) 
       if (name == std::string_view("light") && !film.state.has_film(name) && !other.state.has_film(name)) continue;
       merged.put_own_film(name, sum_of(film.state.own_film(name), other.state.own_film(name)));
     }
+    // Those of the first film, which say the same as those of the other.
+    std::vector<SavedRender::Channel> shares = shares_of(film.state);
+    if (shares != shares_of(other.state)) throw Error("it has other shares of samples");
+    std::ranges::move(shares, std::back_inserter(merged.channels));
     merged.seconds = film.state.seconds + other.state.seconds;
     merged.invalid_samples = film.state.invalid_samples + other.state.invalid_samples;
     film.state = std::move(merged);
@@ -291,9 +312,9 @@ Image develop(const FilmFile& film) {
   const Window all{0, 0, film.state.area.width, film.state.area.height};
   // The two halves of --noise are not brought together: a look at the first must do while it is not done.
   const Film picture = film.state.own_film(film.state.has_film("picture") ? "picture" : "half0");
-  if (!film.state.has_film("light")) return develop(picture, all.width, all);
+  if (!film.state.has_film("light")) return develop(picture, all.width, all, nullptr, 1);
   const Film light = film.state.own_film("light");
-  return develop(picture, all.width, all, &light);
+  return develop(picture, all.width, all, &light, 1);
 }
 
 }  // namespace lanewise

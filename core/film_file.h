@@ -17,7 +17,7 @@
 
 namespace lanewise {
 
-// Samples begin .. end - 1 of every pixel.
+// Samples begin .. end - 1 of every pixel, or its share of them (core/sample_shares.h).
 struct SampleRange {
   uint64_t begin = 0, end = 0;
   bool operator==(const SampleRange&) const = default;

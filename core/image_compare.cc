@@ -31,7 +31,7 @@ ImageComparison compare_images(const Image& a, const Image& b) {
       result.mean_a[c] += va;
       result.mean_b[c] += vb;
       result.mse += error * error;
-      result.mrse += error * error / ((vb + 0.01) * (vb + 0.01));
+      result.mrse += error * error / ((vb + kLeastRadiance) * (vb + kLeastRadiance));
       same = same && va == vb;
     }
     differing += !same;

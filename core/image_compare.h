@@ -7,12 +7,15 @@
 
 namespace lanewise {
 
+// Added to the true value that errors are taken relative to, so that black pixels do not count for all.
+constexpr double kLeastRadiance = 0.01;
+
 struct ImageComparison {
   std::array<double, 3> mean_a{};  // mean radiance of R, G, B
   std::array<double, 3> mean_b{};
   std::array<double, 3> relative_difference{};  // mean_a / mean_b - 1; 0 if both are 0, infinite if only mean_b is
   double mse = 0;                               // mean of (a - b)^2 over pixels and channels
-  double mrse = 0;                              // mean of (a - b)^2 / (b + 0.01)^2: b is the reference
+  double mrse = 0;                              // mean of (a - b)^2 / (b + kLeastRadiance)^2: b is the reference
   double differing = 0;                         // share of the pixels that differ in any channel; NaN differs from all
 };
 

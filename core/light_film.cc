@@ -4,6 +4,7 @@
 
 #include "core/packed_sums.h"
 #include "core/types.h"
+#include "core/workers.h"
 
 namespace lanewise {
 
@@ -68,15 +69,15 @@ PixelMean light_mean(const PixelSums& sums, uint64_t passes) {
           static_cast<float>(sums.y2.as<double>() * scale * scale)};
 }
 
-MeanPicture light_picture(const Film& light, uint32_t width, const Window& window) {
+MeanPicture light_picture(const Film& light, uint32_t width, const Window& window, uint32_t threads) {
   MeanPicture picture{window.width, window.height, {}};
-  picture.pixels.reserve(size_t{window.width} * window.height);
-  for (uint32_t y = window.y; y < window.y + window.height; ++y) {
-    for (uint32_t x = window.x; x < window.x + window.width; ++x) {
-      const size_t i = size_t{y} * width + x;
-      picture.pixels.push_back(light_mean(light.sums[i], light.samples[i]));
+  picture.pixels.resize(size_t{window.width} * window.height);
+  for_each_row(threads, window.height, [&](uint32_t y) {
+    for (uint32_t x = 0; x < window.width; ++x) {
+      const size_t i = size_t{window.y + y} * width + window.x + x;
+      picture.pixels[size_t{y} * window.width + x] = light_mean(light.sums[i], light.samples[i]);
     }
-  }
+  });
   return picture;
 }
 

@@ -44,6 +44,6 @@ std::string pack_splats(std::vector<Splat>& splats);
 // What light paths add to a pixel, from its sums in a LightFilm. The variance is that of a Poisson process: a pixel sees some of
 // very many independent paths.
 PixelMean light_mean(const PixelSums& sums, uint64_t passes);
-MeanPicture light_picture(const Film& light, uint32_t width, const Window& window);
+MeanPicture light_picture(const Film& light, uint32_t width, const Window& window, uint32_t threads);
 
 }  // namespace lanewise

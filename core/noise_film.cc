@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/film.h"
+#include "core/image_compare.h"
 #include "core/tile.h"
 
 namespace lanewise {
@@ -146,7 +147,7 @@ double NoiseFilm::excess(const Half& half, uint32_t block) const {
   double pixels = 0, squares = 0;
   for (const Quarter& q : quarters) {
     if (q.pixels == 0) continue;
-    const double allowed = noise_ * (q.luminance / q.pixels + kLeastLuminance);
+    const double allowed = noise_ * (q.luminance / q.pixels + kLeastRadiance);
     pixels += q.pixels;
     squares += q.variance / (double{kHalves} * static_cast<double>(n)) / (allowed * allowed);
   }

@@ -26,10 +26,9 @@ class NoiseFilm {
   static constexpr uint32_t kHalves = 2;
   static constexpr uint32_t kFirstSamples = 16;    // of each half before anything is decided
   static constexpr uint32_t kBlock = 8;            // side of a block in pixels, on a grid from the picture's corner
-  static constexpr double kLeastLuminance = 0.01;  // added to means, so that black blocks end: as in the measure MRSE
 
   // Draws the blocks that can have a say in the window's pixels, of a picture of width x height. noise: the standard error
-  // that luminance may keep, relative to itself + kLeastLuminance, root mean square over a block. max_samples: of a pixel,
+  // that luminance may keep, relative to itself + kLeastRadiance, root mean square over a block. max_samples: of a pixel,
   // at least 2 kFirstSamples; odd ones are rounded down.
   NoiseFilm(uint32_t width, uint32_t height, const Window& window, double noise, uint64_t max_samples);
 

@@ -30,15 +30,19 @@ class ExactSum {
   explicit constexpr ExactSum(Uint128 units) : units_(units) {}
 
   void add(double x) {
-    // Its digits as they are, where none is below the units'.
     const auto bits = std::bit_cast<uint64_t>(x);
+    const uint64_t digits = (bits & 0xfffffffffffffu) | uint64_t{1} << 52;
     const int shift = static_cast<int>(bits >> 52) - 1075 + kPlaces;
-    if (shift >= 0 && shift < 128 - 53) {
-      *this += ExactSum(Uint128{(bits & 0xfffffffffffffu) | uint64_t{1} << 52} << shift);
-      return;
+    if (shift >= 128 - 53) {
+      const double units = std::ldexp(x, kPlaces);
+      *this += ExactSum(units < 0x1p128 ? static_cast<Uint128>(units) : ~Uint128{0});
+    } else if (shift >= 0) {
+      *this += ExactSum(Uint128{digits} << shift);
+    } else if (shift >= -54) {  // its last digits are below the units': to the nearest, to the even one of two
+      const uint64_t whole = digits >> -shift, rest = digits & ((uint64_t{1} << -shift) - 1);
+      const uint64_t half = uint64_t{1} << (-shift - 1);
+      *this += ExactSum(Uint128{whole} + (rest > half || (rest == half && whole % 2 == 1)));
     }
-    const double units = std::nearbyint(std::ldexp(x, kPlaces));
-    *this += ExactSum(units < 0x1p128 ? static_cast<Uint128>(units) : ~Uint128{0});
   }
   ExactSum& operator+=(ExactSum other) {
     units_ += other.units_;

@@ -29,6 +29,9 @@ class Probes {
   // its next one.
   uint64_t samples() const { return samples_; }
   uint64_t drawn(size_t probe) const { return shares_.count(pixels_[probe], samples_); }
+  uint64_t least_drawn() const {
+    return pixels_.empty() ? 0 : drawn(0);
+  }  // of all, as those of the least share come first
   uint64_t next_sample(size_t probe) const { return kSecondEstimate + shares_.first(pixels_[probe]) + drawn(probe); }
   // Probes of one share, in whole squares, begin .. end - 1: at most some `most` from `begin` on.
   size_t end_of_portion(size_t begin, size_t most) const;

@@ -66,6 +66,8 @@ std::string scene_hash(const Scene& scene) {
 // Before the number of what has a name on the command line: a number that says nothing to a user.
 constexpr char kChoice = '#';
 
+constexpr const char* kEven = "even";  // as on the command line
+
 template <class T>
 std::string choice(T value) {
   return kChoice + std::to_string(static_cast<int>(value));
@@ -87,7 +89,7 @@ RenderIdentity render_identity(const Scene& scene, const Settings& s, const std:
                        std::to_string(s.window().width) + " " + std::to_string(s.window().height)},
           {"seed", std::to_string(s.seed)},
           {"sampler", choice(s.sampler)},
-          {"allocation", choice(s.allocation)},
+          {"allocation", s.allocation == Allocation::kEven ? kEven : "noise"},
           {"view", choice(s.view)},
           {"lens-radius", number(s.lens_radius)},
           {"focal-distance", s.autofocus ? "auto" : number(s.focal_distance)},
@@ -111,7 +113,7 @@ RenderIdentity render_identity(const Scene& scene, const Settings& s, const std:
 
 bool all_have_the_same(const RenderIdentity& identity) {
   const auto found = std::ranges::find(identity, "allocation", [](const auto& entry) { return entry.first; });
-  return found == identity.end() || found->second == choice(Allocation::kEven);
+  return found == identity.end() || found->second == kEven;
 }
 
 std::string arithmetic_of(const std::string& isa) {

@@ -1,6 +1,7 @@
 #include "core/rounds.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -33,10 +34,11 @@ class Rounds {
         shares_(shares()),
         probes_(settings, shares_, settings.estimate_error, side) {
     if (light_) light_film_.emplace(film_.sums.size());
+    for_each_pixel([&](uint32_t i) { paths_per_sample_ += shares_.mean_count(i); });
     if (!control.resume) return;
     control.resume->get_picture(settings, shares_, film_);
-    done_ = whole_samples();
     if (light_) resume_light(*control.resume);
+    done_ = whole_samples();
     probes_.load(*control.resume, done_);
   }
 
@@ -44,13 +46,15 @@ class Rounds {
     draw_probes();
     while (const uint32_t count = next_round()) {
       const double begin = intervals_.elapsed();
-      whole_ = false;
-      whole_ = draw_light(done_ + count) && draw_tiles(done_ + count);
-      if (whole_) done_ += count;
-      if (!whole_ || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
+      const uint64_t paths = paths_behind(done_ + count);
+      const bool whole = draw_light(done_ + count) && draw_tiles(done_ + count);
+      if (whole) done_ += count;
+      if (!whole || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
       draw_probes();
-      seconds_per_sample_ = (intervals_.elapsed() - begin) / count;
-      if (done_ < settings_.spp && (control_.progress || timed())) close();
+      if (paths > 0) seconds_per_path_ = (intervals_.elapsed() - begin) / static_cast<double>(paths);
+      // To show its error; and under --time, to know how long that takes: but for the last one's time.
+      const bool last = done_ >= settings_.spp || (timed() && drawing_time_left() <= closing_);
+      if (!last && (control_.progress || timed())) close();
     }
     Exposure exposure = close();
     intervals_.save([&] { return state(); });
@@ -62,52 +66,62 @@ class Rounds {
     Film& film = light_film_->film();
     saved.get_film("light", settings_.width, film);
     const std::vector<uint64_t> passes = sample_counts(film, settings_.width, settings_.window());
-    const bool even = std::ranges::all_of(passes, [&](uint64_t n) { return n == passes[0]; });
-    // Small shares of some more samples may be no more: then light paths tell.
-    if (!shares_.even()) done_ = std::min(done_, passes[0]);
-    saved.check(even && passes[0] <= settings_.spp && passes[0] >= done_,
-                "damaged: its passes of light paths cannot be");
+    bool can_be = passes[0] <= settings_.spp;
+    for (const uint64_t n : passes) can_be &= n == passes[0];
+    // They are drawn before the samples that they go with; but for the first, by which there are shares.
+    for_each_pixel([&](uint32_t i) {
+      const bool is_first = settings_.allocation == Allocation::kNoise && film_.samples[i] == 1;
+      can_be &= is_first || film_.samples[i] <= shares_.count(i, passes[0]);
+    });
+    saved.check(can_be, "damaged: its passes of light paths cannot be");
     std::ranges::fill(film.samples, passes[0]);
   }
 
-  // Those that the samples so far have. If there are none, by a pilot: if that is asked for, and leaves most of the time.
+  // Those that the samples so far have. If there are none, by the first of every pixel, where that is asked for.
   SampleShares shares() {
-    constexpr double kMostOfTime = 0.125;
     const SampleShares same(settings_.first_sample);
     if (settings_.allocation == Allocation::kEven) return same;
     if (const SavedRender* saved = control_.resume) {
       saved->check_area(settings_.window());
-      if (SampleShares::are_in(*saved)) return {settings_.first_sample, settings_.width, settings_.height, *saved};
       bool begun = false;
       saved->get<uint64_t>("picture.samples", settings_.width, [&](size_t, uint64_t n) { begun |= n > 0; });
-      if (begun) return same;
+      if (begun) {
+        const auto had = SampleShares::saved(settings_.first_sample, settings_.width, settings_.height, *saved);
+        saved->check(had.has_value(), "damaged: its shares of samples cannot be");
+        return *had;
+      }
     }
-    draw_pilot();
-    const bool in_time = !timed() || intervals_.elapsed() <= kMostOfTime * settings_.seconds;
-    if (intervals_.stopped() || !in_time) return same;
-    return {settings_.first_sample, settings_.width, settings_.height, film_.sums.data()};
+    // Of the whole picture, so that a part of it has the same shares; unless they hang on the clock already.
+    Settings all = settings_;
+    if (!timed()) all.crop = {};
+    if (!draw_first(all)) return same;
+    if (settings_.first_sample == 0) for_each_pixel([&](uint32_t i) { film_.samples[i] = 1; });
+    return {settings_.first_sample, settings_.width, settings_.height, all.window(), film_.sums.data()};
   }
 
-  // Of the whole picture, whatever its window. The sums are for no other use.
-  void draw_pilot() {
-    Settings all = settings_;
-    all.crop = {};
-    const std::vector<Tile> tiles = make_tiles(all, 1);
+  // Sample 0 of every pixel. False if the render was stopped before that.
+  bool draw_first(const Settings& settings) {
+    const std::vector<Tile> tiles = make_tiles(settings, 1);
     std::atomic<uint64_t> rays{0};
     run_workers(
         workers_, tiles.size(),
         [&](size_t item, uint32_t worker) {
           if (intervals_.stopped()) return uint64_t{0};
           for (const uint32_t pixel : tiles[item].pixels) film_.sums[pixel] = {};
-          rays += draw_(tiles[item].pixels, kPilotSample, 1, film_.sums.data(), worker);
+          rays += draw_(tiles[item].pixels, 0, 1, film_.sums.data(), worker);
           return uint64_t{0};
         },
         [&](const Progress&) { report(0); });
     rays_ += rays;
+    return !intervals_.stopped();
   }
 
   bool timed() const { return settings_.seconds > 0; }
-  double drawing_time_left() const { return settings_.seconds - closing_ - intervals_.elapsed(); }
+  // Whose last piece, begun at its end, takes a wave of a thread's time.
+  double drawing_time_left() const {
+    const double last_piece = seconds_per_path_ * workers_ * settings_.wave;
+    return settings_.seconds - closing_ - last_piece - intervals_.elapsed();
+  }
 
   // 0: none.
   uint32_t next_round() const {
@@ -117,7 +131,8 @@ class Rounds {
     if (!timed()) return short_of(probes_.pixels().empty() ? left : std::min(done_, left));
     const double time_left = drawing_time_left();
     if (left == 0 || time_left <= 0) return 0;
-    return seconds_per_sample_ > 0 ? short_of(timed_round(done_, settings_.spp, time_left / seconds_per_sample_)) : 1;
+    if (seconds_per_path_ == 0) return 1;
+    return short_of(timed_round(done_, settings_.spp, time_left / (seconds_per_path_ * paths_per_sample_)));
   }
   // Light paths are drawn before the tiles of a round, which is not to be so long that one waits for them.
   uint32_t short_of(uint64_t count) const {
@@ -134,11 +149,18 @@ class Rounds {
     }
   }
 
-  // The samples that all pixels have their shares of.
+  // The most samples that all pixels have their shares of, and light paths as many passes.
   uint64_t whole_samples() const {
-    uint64_t least = settings_.spp;
+    uint64_t least = light_ ? light_film_->passes() : settings_.spp;
     for_each_pixel([&](uint32_t i) { least = std::min(least, shares_.samples_for(i, film_.samples[i])); });
     return least;
+  }
+
+  // None has more than that, nor have light paths.
+  bool is_whole(uint64_t samples) const {
+    bool whole = !light_ || light_film_->passes() == samples;
+    for_each_pixel([&](uint32_t i) { whole &= film_.samples[i] == shares_.count(i, samples); });
+    return whole;
   }
 
   // Of any pixel.
@@ -148,33 +170,33 @@ class Rounds {
     return least;
   }
 
-  // Tiles, or blocks of one share near each other, of the pixels that have less than their shares of that, all of a tile with as many
+  // Tiles, or groups of one share near each other, of the pixels that have less than their shares of that, all of a tile with as many
   // samples and as many to come. They are of a wave or little more, if that leaves work for all workers.
   std::vector<Tile> tiles_behind(uint64_t samples) const {
     constexpr uint64_t kPerWorker = 16;
-    std::vector<Tile> tiles = make_tiles(settings_, static_cast<uint32_t>(samples - done_));
-    uint64_t paths = 0;
-    for_each_pixel([&](uint32_t i) { paths += paths_behind(i, samples); });
-    const uint64_t enough = std::min<uint64_t>(settings_.wave, paths / (kPerWorker * workers_));
+    const uint64_t enough = std::min<uint64_t>(settings_.wave, paths_behind(samples) / (kPerWorker * workers_));
     std::vector<Tile> behind;
-    std::map<std::pair<uint64_t, uint64_t>, Tile> parts;  // by samples drawn, and to come
+    std::map<std::array<uint64_t, 3>, Tile> parts;  // by the number of their first sample, samples drawn, and to come
     const auto move_full_parts = [&] {
       std::erase_if(parts, [&](auto& part) {
-        if (part.second.pixels.size() * part.first.second < enough) return false;
+        if (part.second.pixels.size() * part.first[2] < enough) return false;
         behind.push_back(std::move(part.second));
         return true;
       });
     };
-    for (Tile& tile : tiles) {
-      const auto block = [&](uint32_t pixel) { return shares_.block(pixel); };
-      std::ranges::stable_sort(tile.pixels, {}, block);
-      for (size_t i = 0; i < tile.pixels.size(); ++i) {
-        const uint32_t pixel = tile.pixels[i];
-        if (i > 0 && block(pixel) != block(tile.pixels[i - 1])) move_full_parts();
-        if (const uint64_t more = paths_behind(pixel, samples))
-          parts[{film_.samples[pixel], more}].pixels.push_back(pixel);
+    for (const Tile& tile : make_tiles(settings_, static_cast<uint32_t>(samples - done_), !shares_.even())) {
+      for (auto begin = tile.pixels.begin(); begin != tile.pixels.end();) {
+        const uint32_t first = *begin;
+        const auto end = std::find_if(begin, tile.pixels.end(), [&](uint32_t pixel) {
+          return shares_.group(pixel) != shares_.group(first) || film_.samples[pixel] != film_.samples[first];
+        });
+        if (const uint64_t more = paths_behind(first, samples)) {
+          std::vector<uint32_t>& part = parts[{shares_.first(first), film_.samples[first], more}].pixels;
+          part.insert(part.end(), begin, end);
+          move_full_parts();
+        }
+        begin = end;
       }
-      move_full_parts();
     }
     for (auto& [counts, part] : parts) behind.push_back(std::move(part));
     return behind;
@@ -182,6 +204,12 @@ class Rounds {
   uint64_t paths_behind(uint32_t pixel, uint64_t samples) const {
     const uint64_t due = shares_.count(pixel, samples);
     return due - std::min(film_.samples[pixel], due);
+  }
+  // Of all pixels.
+  uint64_t paths_behind(uint64_t samples) const {
+    uint64_t paths = 0;
+    for_each_pixel([&](uint32_t i) { paths += paths_behind(i, samples); });
+    return paths;
   }
 
   // Brings every pixel to its share of that many samples. False if time was up, or the render was stopped, before that. The first
@@ -204,7 +232,7 @@ class Rounds {
           return true;
         },
         [&](double share) { report(static_cast<double>(done_) + share * count); }, [&] { return state(); },
-        [&] { return done_ > 0 && time_is_up(); });
+        [&] { return time_is_up() && least_samples() > 0; });
   }
 
   // Brings the light paths to that many passes. False if time was up, or the render was stopped, before that.
@@ -230,9 +258,14 @@ class Rounds {
     return true;
   }
 
-  // Brings them to the samples that the picture has.
+  // Brings them to the samples that the picture has, if there is time for that.
   void draw_probes() {
-    while (probes_.samples() < done_ && !probes_.pixels().empty()) draw_some_probes();
+    if (probes_.pixels().empty() || probes_.samples() >= done_) return;
+    const auto behind = static_cast<double>(done_ - probes_.samples());
+    if (timed() && drawing_time_left() < behind * seconds_per_probe_sample_) return;
+    const double begin = intervals_.elapsed();
+    while (probes_.samples() < done_) draw_some_probes();
+    seconds_per_probe_sample_ = (intervals_.elapsed() - begin) / behind;
   }
 
   void draw_some_probes() {
@@ -276,8 +309,8 @@ class Rounds {
     saved.put_film("picture", settings_.width, film_);
     if (light_film_) saved.put_film("light", settings_.width, light_film_->film());
     probes_.save(saved);
-    shares_.save(saved);
-    if (!shares_.even() && whole_) saved.numbers[kWholeSamples] = done_;
+    if (settings_.allocation == Allocation::kNoise) shares_.save(saved, settings_.width);
+    if (const uint64_t whole = whole_samples(); whole > 0 && is_whole(whole)) saved.numbers[kWholeSamples] = whole;
     return saved;
   }
 
@@ -285,13 +318,15 @@ class Rounds {
   Exposure close() {
     const double begin = intervals_.elapsed();
     const Window window = settings_.window();
-    if (probes_.samples() > 1 && least_samples() > 1) {
+    const uint32_t threads = thread_count(settings_);
+    const Film* light = light_film_ ? &light_film_->film() : nullptr;
+    if (probes_.least_drawn() > 1 && least_samples() > 1) {
       std::optional<MeanPicture> by_light;
-      if (light_film_) by_light = light_picture(light_film_->film(), settings_.width, window);
-      error_ = estimate_error(mean_picture(film_, settings_.width, window, side_), by_light ? &*by_light : nullptr,
-                              probes_, thread_count(settings_));
+      if (light) by_light = light_picture(*light, settings_.width, window, threads);
+      error_ = estimate_error(mean_picture(film_, settings_.width, window, side_, threads),
+                              by_light ? &*by_light : nullptr, probes_, threads);
     }
-    Exposure exposure{.image = develop(film_, settings_.width, window, light_film_ ? &light_film_->film() : nullptr),
+    Exposure exposure{.image = develop(film_, settings_.width, window, light, threads),
                       .samples = sample_counts(film_, settings_.width, window),
                       .stopped = intervals_.stopped() && done_ < settings_.spp,
                       .error = error_};
@@ -313,10 +348,11 @@ class Rounds {
   const Draw& draw_;
   const RenderControl& control_;
   Intervals intervals_;
-  double closing_ = 0;             // seconds that close() takes, to be kept for the last one
-  double seconds_per_sample_ = 0;  // of each pixel, in the last round; 0: there was none yet
-  uint64_t done_ = 0;              // samples that every pixel has its share of
-  bool whole_ = false;             // no pixel has more, nor do light paths
+  double closing_ = 0;                   // seconds that close() takes, to be kept for the last one
+  double seconds_per_path_ = 0;          // of the picture, in the last round; 0: there was none yet
+  double seconds_per_probe_sample_ = 0;  // of all probes, the last time
+  double paths_per_sample_ = 0;          // of the whole window, on average
+  uint64_t done_ = 0;                    // samples that every pixel has its share of
   uint64_t rays_ = 0;
   Film film_;
   LightPathDraw* light_;

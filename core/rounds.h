@@ -9,7 +9,8 @@
 
 namespace lanewise {
 
-// Number in a SavedRender, where pixels have their shares and no more of so many samples: how many.
+// Number in a SavedRender, where every pixel has its share of so many samples and no more, and light paths have as many passes: how
+// many.
 constexpr const char* kWholeSamples = "whole-samples";
 
 // Where time is given: how many samples of each pixel the next round draws, of `most` in all. done: so far, of each pixel;

@@ -4,122 +4,151 @@
 #include <array>
 #include <cmath>
 
+#include "core/dimensions.h"
+#include "core/image_compare.h"
+#include "core/path_reuse.h"
 #include "core/saved_render.h"
-#include "core/settings.h"
 
 namespace lanewise {
 namespace {
-
-constexpr double kLeastRadiance = 0.01;  // MRSE's
 
 // In eighths. Powers of two, at which sequences of low discrepancy are at their best, and one step between.
 constexpr uint8_t kSteps[] = {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 static_assert(kSteps[0] == SampleShares::kLeast && *std::rbegin(kSteps) == SampleShares::kMost);
 
-constexpr const char* kSaved = "shares";
+// Of the mean sigma: what a block has at least. It counts where few blocks have nearly all the noise that was met, and as
+// many samples as they may have: then the others share the rest.
+constexpr double kLeastSigma = 0.125;
+
+// A pixel's two estimates have no sample in common.
+static_assert(kMaxSpp / SampleShares::kEven * SampleShares::kMost <= kSecondEstimate);
+
+// A picture's squares of any other kind are whole in these.
+static_assert(SampleShares::kSquare % kTogetherSide == 0);
 
 // The next to it, by ratio.
 uint8_t step_near(double eighths) {
   size_t k = 0;
-  while (k + 1 < std::size(kSteps) && eighths * eighths > static_cast<double>(kSteps[k]) * kSteps[k + 1]) ++k;
+  for (size_t i = 0; i + 1 < std::size(kSteps); ++i)
+    k += eighths * eighths > static_cast<double>(kSteps[i]) * kSteps[i + 1];
   return kSteps[k];
 }
+
+struct Block {
+  double pixels = 0;
+  std::array<double, 3> sum{}, squares{};  // over them, by channel
+};
 
 struct Grid {
   uint32_t columns, rows;
 
-  // The mean over the blocks around each, itself among them.
-  std::vector<double> smooth(const std::vector<double>& values) const {
-    std::vector<double> means(values.size());
-    for (uint32_t row = 0; row < rows; ++row) {
-      for (uint32_t column = 0; column < columns; ++column) {
-        double sum = 0, n = 0;
-        for (uint32_t j = row - std::min(row, 1u); j < std::min(row + 2, rows); ++j) {
-          for (uint32_t i = column - std::min(column, 1u); i < std::min(column + 2, columns); ++i) {
-            sum += values[size_t{j} * columns + i];
-            n += 1;
-          }
-        }
-        means[size_t{row} * columns + column] = sum / n;
+  // f(other) for the blocks around one, itself among them.
+  template <class F>
+  void for_each_around(size_t block, const F& f) const {
+    const auto row = static_cast<uint32_t>(block / columns), column = static_cast<uint32_t>(block % columns);
+    for (uint32_t j = row - std::min(row, 1u); j < std::min(row + 2, rows); ++j) {
+      for (uint32_t i = column - std::min(column, 1u); i < std::min(column + 2, columns); ++i) {
+        f(size_t{j} * columns + i);
       }
     }
-    return means;
   }
 };
 
-}  // namespace
-
-SampleShares::SampleShares(uint64_t first_sample, uint32_t width, uint32_t height, const PixelSums* pilot)
-    : SampleShares(first_sample, width) {
-  const Grid grid{columns_, (height + kBlock - 1) / kBlock};
-  const size_t blocks = size_t{grid.columns} * grid.rows;
-  std::vector<double> pixels(blocks);
-  std::array<std::vector<double>, 3> mean, square;  // by channel
-  mean.fill(pixels), square.fill(pixels);
-  for (uint32_t pixel = 0; pixel < width * height; ++pixel) {
-    const size_t block = block_of(pixel);
-    const PixelSums& sums = pilot[pixel];
-    const double rgb[] = {sums.r.as<double>(), sums.g.as<double>(), sums.b.as<double>()};
-    pixels[block] += 1;
-    for (size_t c = 0; c < 3; ++c) mean[c][block] += rgb[c], square[c][block] += rgb[c] * rgb[c];
-  }
-  std::vector<double> variance(blocks);  // relative, within the block
-  for (size_t c = 0; c < 3; ++c) {
-    for (size_t b = 0; b < blocks; ++b) mean[c][b] /= pixels[b];
-    const std::vector<double> around = grid.smooth(mean[c]);
-    for (size_t b = 0; b < blocks; ++b) {
-      const double level = around[b] + kLeastRadiance;
-      variance[b] += std::max(0.0, square[c][b] / pixels[b] - mean[c][b] * mean[c][b]) / (level * level);
+// Of the samples in each block, and around it: the relative variance within blocks.
+std::vector<double> relative_deviations(const Grid& grid, const std::vector<Block>& blocks) {
+  std::vector<double> variances(blocks.size());  // times pixels
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    if (blocks[b].pixels == 0) continue;
+    for (size_t c = 0; c < 3; ++c) {
+      double pixels = 0, sum = 0;
+      grid.for_each_around(b, [&](size_t other) { pixels += blocks[other].pixels, sum += blocks[other].sum[c]; });
+      const double level = sum / pixels + kLeastRadiance, own = blocks[b].sum[c];
+      variances[b] += std::max(0.0, blocks[b].squares[c] - own * own / blocks[b].pixels) / (level * level);
     }
   }
-  std::vector<double> sigma = grid.smooth(variance);
-  double sum = 0;
-  for (size_t b = 0; b < blocks; ++b) sum += pixels[b] * (sigma[b] = std::sqrt(sigma[b]));
-  const double all = static_cast<double>(width) * height;
-  if (sum == 0) return;
+  std::vector<double> deviations(blocks.size());
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    double pixels = 0, sum = 0;
+    grid.for_each_around(b, [&](size_t other) { pixels += blocks[other].pixels, sum += variances[other]; });
+    if (pixels > 0) deviations[b] = std::sqrt(sum / pixels);
+  }
+  return deviations;
+}
 
-  // The largest shares that come to no more than all samples.
-  eighths_.resize(blocks);
-  const auto deal = [&](double scale) {
+// Steps in proportion to sigma, the largest that come to no more than kEven for each pixel. pixels: of each block.
+std::vector<uint8_t> deal(std::vector<double> sigma, const std::vector<Block>& blocks) {
+  double all = 0, sum = 0;
+  for (size_t b = 0; b < blocks.size(); ++b) all += blocks[b].pixels, sum += blocks[b].pixels * sigma[b];
+  std::vector<uint8_t> steps(blocks.size(), SampleShares::kEven);
+  if (sum == 0) return steps;
+  for (double& s : sigma) s = std::max(s / (sum / all), kLeastSigma);
+  const auto deal_at = [&](double log2_scale) {
+    const double scale = std::exp2(log2_scale);
     double dealt = 0;
-    for (size_t b = 0; b < blocks; ++b) dealt += pixels[b] * (eighths_[b] = step_near(scale * sigma[b] * all / sum));
+    for (size_t b = 0; b < blocks.size(); ++b) dealt += blocks[b].pixels * (steps[b] = step_near(scale * sigma[b]));
     return dealt;
   };
-  double low = 0, high = 1e6;
-  for (int i = 0; i < 60; ++i) {
-    const double scale = (low + high) / 2;
-    (deal(scale) <= kEven * all ? low : high) = scale;
+  // From where all are the least to where all are the most, to a millionth.
+  double low = -32, high = 16;
+  for (int i = 0; i < 26; ++i) {
+    const double middle = (low + high) / 2;
+    (deal_at(middle) <= SampleShares::kEven * all ? low : high) = middle;
   }
-  deal(low);
+  deal_at(low);
+  return steps;
 }
 
-SampleShares::SampleShares(uint64_t first_sample, uint32_t width, uint32_t height, const SavedRender& saved)
+}  // namespace
+
+SampleShares::SampleShares(uint64_t first_sample, uint32_t width, uint32_t height, const Window& drawn,
+                           const PixelSums* sums)
     : SampleShares(first_sample, width) {
-  eighths_.assign(size_t{columns_} * ((height + kBlock - 1) / kBlock), 0);
+  const Grid grid{columns_, (height + kBlock - 1) / kBlock};
+  std::array<std::vector<Block>, kColours> blocks;
+  blocks.fill(std::vector<Block>(size_t{grid.columns} * grid.rows));
+  for (uint32_t y = drawn.y; y < drawn.y + drawn.height; ++y) {
+    for (uint32_t x = drawn.x; x < drawn.x + drawn.width; ++x) {
+      const uint32_t pixel = y * width + x;
+      const size_t group = group_of(pixel);
+      Block& block = blocks[group % kColours][group / kColours];
+      const double rgb[] = {sums[pixel].r.as<double>(), sums[pixel].g.as<double>(), sums[pixel].b.as<double>()};
+      block.pixels += 1;
+      for (size_t c = 0; c < 3; ++c) block.sum[c] += rgb[c], block.squares[c] += rgb[c] * rgb[c];
+    }
+  }
+  eighths_.resize(kColours * blocks[0].size());
+  for (size_t colour = 0; colour < kColours; ++colour) {
+    const std::vector<Block>& others = blocks[kColours - 1 - colour];
+    const std::vector<uint8_t> steps = deal(relative_deviations(grid, others), others);
+    for (size_t b = 0; b < steps.size(); ++b) eighths_[b * kColours + colour] = steps[b];
+  }
+  if (std::ranges::all_of(eighths_, [](uint8_t share) { return share == kEven; })) eighths_.clear();
+}
+
+std::optional<SampleShares> SampleShares::saved(uint64_t first_sample, uint32_t width, uint32_t height,
+                                                const SavedRender& saved) {
+  if (!saved.has(kSaved)) return std::nullopt;
+  SampleShares shares(first_sample, width);
+  shares.eighths_.assign(kColours * size_t{shares.columns_} * ((height + kBlock - 1) / kBlock), 0);
+  bool can_be = true, even = true;
   saved.get<uint32_t>(kSaved, width, [&](size_t pixel, uint32_t eighths) {
-    uint8_t& share = eighths_[block_of(static_cast<uint32_t>(pixel))];
-    const bool known = std::ranges::find(kSteps, eighths) != std::end(kSteps);
-    saved.check(known && (share == 0 || share == eighths), "damaged: its shares of samples cannot be");
+    uint8_t& share = shares.eighths_[shares.group_of(static_cast<uint32_t>(pixel))];
+    can_be &= std::ranges::find(kSteps, eighths) != std::end(kSteps) && (share == 0 || share == eighths);
+    even &= eighths == kEven;
     share = static_cast<uint8_t>(eighths);
   });
+  if (!can_be) return std::nullopt;
+  return even ? SampleShares(first_sample) : shares;
 }
 
-bool SampleShares::are_in(const SavedRender& saved) { return saved.has(kSaved); }
-
-void SampleShares::save(SavedRender& saved) const {
-  if (!even()) saved.put(kSaved, width_, [&](size_t pixel) { return share(static_cast<uint32_t>(pixel)); });
+void SampleShares::save(SavedRender& saved, uint32_t width) const {
+  saved.put(kSaved, width, [&](size_t pixel) { return share(static_cast<uint32_t>(pixel)); });
 }
 
 uint64_t SampleShares::up_to(uint32_t pixel, uint64_t samples) const {
   if (even()) return samples;
   const Uint128 eighths = Uint128{samples} * share(pixel);
-  return static_cast<uint64_t>(std::min<Uint128>((eighths + kEven - 1) / kEven, kMaxSpp));
-}
-
-bool SampleShares::may_be(uint64_t count, uint64_t samples, uint64_t ranges) {
-  // Shares are rounded at both ends of a range.
-  const Uint128 eighths = Uint128{count} * kEven, slack = Uint128{ranges} * kEven;
-  return eighths + slack >= Uint128{samples} * kLeast && eighths <= Uint128{samples} * kMost + slack;
+  return static_cast<uint64_t>((eighths + kEven - 1) / kEven);
 }
 
 uint64_t SampleShares::samples_for(uint32_t pixel, uint64_t count) const {

@@ -50,9 +50,15 @@ bool SavedRender::has(const std::string& name) const {
 void SavedRender::get_picture(const Settings& settings, const SampleShares& shares, Film& film) const {
   check_area(settings.window());
   get_film("picture", settings.width, film);
-  bool more = false;
-  for (uint32_t i = 0; i < film.samples.size(); ++i) more |= film.samples[i] > shares.count(i, settings.spp);
+  bool more = false, can_be = true;
+  get<uint64_t>("picture.samples", settings.width, [&](size_t i, uint64_t n) {
+    const auto pixel = static_cast<uint32_t>(i);
+    more |= n > shares.count(pixel, settings.spp);
+    const bool is_first = n == 1 && settings.first_sample == 0;
+    can_be &= more || is_first || shares.count(pixel, shares.samples_for(pixel, n)) == n;
+  });
   check(!more, "it has more samples than are asked for");
+  check(can_be, "damaged: its pixels have not their shares of samples");
 }
 
 void SavedRender::check(bool holds, const std::string& otherwise) const {

@@ -22,6 +22,7 @@ class SavedRender {
   struct Channel {
     std::string name;
     std::vector<uint32_t> words;  // a pixel each, rows from the top
+    bool operator==(const Channel&) const = default;
   };
 
   Window area;  // of the picture

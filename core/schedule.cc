@@ -44,7 +44,7 @@ class Adaptive {
       noisy += std::ranges::count_if(tile.pixels, [&](uint32_t pixel) { return !converged(pixel); });
       all += tile.pixels.size();
     }
-    Exposure exposure{.image = develop(film_, settings_.width, window),
+    Exposure exposure{.image = develop(film_, settings_.width, window, nullptr, thread_count(settings_)),
                       .samples = sample_counts(film_, settings_.width, window),
                       .stopped = !finished,
                       .converged = 1 - static_cast<double>(noisy) / static_cast<double>(all),

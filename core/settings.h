@@ -24,7 +24,9 @@ struct CourseLobe {
   bool any() const { return masking || clamp; }
 };
 
-constexpr uint64_t kMaxSpp = uint64_t{1} << 62;
+// Samples of a picture. A pixel with the largest share of them (core/sample_shares.h) has less than 2^63, where the numbers of its
+// second estimate begin (core/dimensions.h).
+constexpr uint64_t kMaxSpp = uint64_t{1} << 59;
 
 // A rectangle of pixels of the whole picture; row 0 is at the top.
 struct Window {

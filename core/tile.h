@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/sample_shares.h"
 #include "core/settings.h"
 
 namespace lanewise {
@@ -16,10 +17,28 @@ struct Tile {
   std::vector<uint32_t> pixels;  // y * width + x
 };
 
+// f(x, y) for the pixels of a window, group by group.
+template <class F>
+void for_each_by_groups(const Window& window, const F& f) {
+  constexpr uint32_t kBlock = SampleShares::kBlock;
+  const uint32_t x_end = window.x + window.width, y_end = window.y + window.height;
+  for (uint32_t row = window.y / kBlock * kBlock; row < y_end; row += kBlock) {
+    for (uint32_t column = window.x / kBlock * kBlock; column < x_end; column += kBlock) {
+      for (uint32_t colour = 0; colour < SampleShares::kColours; ++colour) {
+        for (uint32_t y = std::max(row, window.y); y < std::min(row + kBlock, y_end); ++y) {
+          for (uint32_t x = std::max(column, window.x); x < std::min(column + kBlock, x_end); ++x) {
+            if (SampleShares::colour(x, y) == colour) f(x, y);
+          }
+        }
+      }
+    }
+  }
+}
+
 // Cuts the window into squares of a side that gives a tile's samples, so many a pixel, a full wave, if the picture is large
 // enough for that to leave every thread work to the end. Cuts are at multiples of the side: through no square of
-// core/path_reuse.h.
-inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples) {
+// core/path_reuse.h. by_groups: pixels of one group of core/sample_shares.h come together, not row by row.
+inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples, bool by_groups = false) {
   constexpr uint32_t kMinSide = 16, kMaxSide = 64;
   uint32_t side = kMinSide;
   while (side < kMaxSide && uint64_t{side} * side * samples < settings.wave) side *= 2;
@@ -30,8 +49,13 @@ inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples) 
   for (uint32_t y0 = window.y; y0 < y_end; y0 = next(y0, y_end)) {
     for (uint32_t x0 = window.x; x0 < x_end; x0 = next(x0, x_end)) {
       Tile& tile = tiles.emplace_back();
+      const auto add = [&](uint32_t x, uint32_t y) { tile.pixels.push_back(y * settings.width + x); };
+      if (by_groups) {
+        for_each_by_groups({x0, y0, next(x0, x_end) - x0, next(y0, y_end) - y0}, add);
+        continue;
+      }
       for (uint32_t y = y0; y < next(y0, y_end); ++y) {
-        for (uint32_t x = x0; x < next(x0, x_end); ++x) tile.pixels.push_back(y * settings.width + x);
+        for (uint32_t x = x0; x < next(x0, x_end); ++x) add(x, y);
       }
     }
   }

@@ -71,4 +71,14 @@ void run_workers(uint32_t threads, size_t items, const std::function<uint64_t(si
   report();
 }
 
+void for_each_row(uint32_t threads, uint32_t rows, const std::function<void(uint32_t)>& body) {
+  run_workers(
+      threads, rows,
+      [&](size_t row, uint32_t) {
+        body(static_cast<uint32_t>(row));
+        return uint64_t{0};
+      },
+      nullptr);
+}
+
 }  // namespace lanewise

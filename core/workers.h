@@ -15,4 +15,7 @@ namespace lanewise {
 void run_workers(uint32_t threads, size_t items, const std::function<uint64_t(size_t item, uint32_t worker)>& body,
                  const std::function<void(const Progress&)>& progress);
 
+// Runs body(row) for the rows 0 .. rows - 1 of a picture in the same way.
+void for_each_row(uint32_t threads, uint32_t rows, const std::function<void(uint32_t row)>& body);
+
 }  // namespace lanewise

@@ -143,6 +143,24 @@ TEST_CASE("pixel sums: samples of 2^-49 and more are exact, darker ones are 2^-7
   CHECK(one.g.as<double>() == double{0.1f} * 0x1p34);
 }
 
+TEST_CASE("pixel sums: each number is rounded to the nearest unit, to the even one of two") {
+  constexpr int kPlaces = ExactSum<56>::places;
+  for (const uint64_t digits : {uint64_t{1}, uint64_t{3}, (uint64_t{1} << 53) - 1, (uint64_t{1} << 52) + 1,
+                                (uint64_t{1} << 52) + 0xabcdef12345u, (uint64_t{3} << 51), (uint64_t{5} << 50)}) {
+    for (int exponent = -200; exponent < 70; ++exponent) {
+      const double x = std::ldexp(static_cast<double>(digits), exponent - 53);
+      ExactSum<kPlaces> sum;
+      sum.add(x);
+      REQUIRE(sum.units() == static_cast<Uint128>(std::nearbyint(std::ldexp(x, kPlaces))));
+    }
+  }
+  ExactSum<kPlaces> most;
+  most.add(0);
+  CHECK(most.units() == 0);
+  most.add(0x1p72);
+  CHECK(most.units() == ~Uint128{0});
+}
+
 TEST_CASE("accumulate: samples too bright to be cut in vectors are added all the same") {
   constexpr uint32_t kSamples = 100;
   const uint32_t pixel = 0;
@@ -186,7 +204,7 @@ TEST_CASE("film: the mean, and when a pixel has converged") {
   film.sums[0].add(0.5, 2, 3);
   film.sums[0].add(1.5, 2, 3);
   film.samples[0] = 2;
-  const Image image = develop(film, 2, {0, 0, 2, 1});
+  const Image image = develop(film, 2, {0, 0, 2, 1}, nullptr, 1);
   CHECK(image.rgb[0] == 1);
   CHECK(image.rgb[2] == 3);
   CHECK(image.rgb[3] == 0);

@@ -142,7 +142,14 @@ TEST_CASE("merge command: parts, in any order, are the picture of all samples") 
   CHECK(same_by_noise);
   REQUIRE(lanewise(folder, render({"--samples", "0:7"}, "even.exr")).exit_code == 0);
   CHECK(lanewise(folder, {"merge", "even.exr", "b.exr", "-f", "no.exr"}).err ==
-        "lanewise: b.exr: cannot merge: allocation is another\n");
+        "lanewise: b.exr: cannot merge: allocation is noise, not even\n");
+  // What is merged has its shares still, and goes on.
+  REQUIRE(lanewise(folder, {"merge", "c.exr", "a.exr", "b.exr", "-q", "-f", "all.exr"}).exit_code == 0);
+  const std::vector<std::string> more = {"-s", "64", "--allocation", "noise", "--checkpoint", "all.exr", "--resume"};
+  REQUIRE(lanewise(folder, render(more, "got.pfm")).exit_code == 0);
+  REQUIRE(lanewise(folder, render({"-s", "64", "--allocation", "noise"}, "want.pfm")).exit_code == 0);
+  const bool same_when_resumed = test::read_text(folder.file("got.pfm")) == test::read_text(folder.file("want.pfm"));
+  CHECK(same_when_resumed);
 
   REQUIRE(lanewise(folder, render({"-s", "40"}, "want.pfm")).exit_code == 0);
   for (const auto& [name, samples] : parts) {

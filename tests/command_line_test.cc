@@ -119,7 +119,7 @@ TEST_CASE("command line: wrong flags end with 2, one line and the old picture") 
   const std::vector<std::pair<Arguments, std::string>> cases = {
       {{"-s", "0"}, "--spp"},
       {{"-s", "-5"}, "--spp"},
-      {{"-s", "4611686018427387905"}, "--spp"},
+      {{"-s", "576460752303423489"}, "--spp"},
       {{"-s", "ten"}, "--spp"},
       {{"--samples", "8"}, "--samples"},
       {{"--samples", "8:8", "-f", "a.exr"}, "--samples"},

@@ -130,7 +130,7 @@ TEST_CASE("resume: a stopped render's picture is that of the samples it has") {
   }();
   Film light(film.sums.size());
   state.get_film("light", settings.width, light);
-  CHECK(develop(film, settings.width, settings.window(), &light).rgb == got.image.rgb);
+  CHECK(develop(film, settings.width, settings.window(), &light, 2).rgb == got.image.rgb);
   CHECK(film.samples == got.samples);
 }
 

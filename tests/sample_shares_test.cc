@@ -13,6 +13,7 @@
 
 #include "core/image_compare.h"
 #include "core/render.h"
+#include "core/rounds.h"
 #include "core/saved_render.h"
 #include "core/schedule.h"
 #include "core/verify/test_scene.h"
@@ -30,8 +31,8 @@ Settings by_noise(uint64_t spp) {
   return settings;
 }
 
-// Of a picture whose noise is four times as strong in its right half, and none in its first rows.
-std::vector<PixelSums> pilot() {
+// First samples of a picture whose noise is four times as strong in its right half, and none in its first rows.
+std::vector<PixelSums> first_samples() {
   std::vector<PixelSums> sums(kWidth * kHeight);
   for (uint32_t i = 0; i < sums.size(); ++i) {
     const uint32_t x = i % kWidth, y = i / kWidth;
@@ -76,14 +77,16 @@ RenderResult render_with(const Settings& settings, const RenderControl& control 
 }  // namespace
 
 TEST_CASE("sample shares: in proportion to the noise, as many in all as there would be") {
-  const std::vector<PixelSums> sums = pilot();
-  const SampleShares shares(0, kWidth, kHeight, sums.data());
+  const std::vector<PixelSums> sums = first_samples();
+  const SampleShares shares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
   REQUIRE(!shares.even());
   double left = 0, right = 0, all = 0;
   for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
     const uint32_t x = i % kWidth, y = i / kWidth;
     all += shares.share(i);
-    CHECK(shares.share(i) == shares.share((y - y % 4) * kWidth + x - x % 4));
+    const uint32_t square = (y - y % 2) * kWidth + x - x % 2, corner = (y - y % 4) * kWidth + x - x % 4;
+    CHECK(shares.share(i) == shares.share(square));
+    if ((x / 2 + y / 2) % 2 == 0) CHECK(shares.share(i) == shares.share(corner));
     if (y < 8) CHECK(shares.share(i) == SampleShares::kLeast);
     if (y >= 20 && x < 16) left += shares.share(i) / (16.0 * 19);
     if (y >= 20 && x >= 32 && x < 48) right += shares.share(i) / (16.0 * 19);
@@ -94,11 +97,46 @@ TEST_CASE("sample shares: in proportion to the noise, as many in all as there wo
   CHECK(right / left == doctest::Approx(4).epsilon(0.15));
 }
 
+TEST_CASE("sample shares: a pixel's sample has no say in its own share, nor in those of its colour") {
+  std::vector<PixelSums> sums = first_samples();
+  const SampleShares before(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+  const uint32_t changed[] = {0, 17 * kWidth + 20, 38 * kWidth + 49};
+  for (const uint32_t pixel : changed) {
+    sums = first_samples();
+    sums[pixel].add(1000, 0, 5);
+    const SampleShares after(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+    const auto colour = [](uint32_t i) { return SampleShares::colour(i % kWidth, i / kWidth); };
+    size_t others = 0;
+    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+      if (colour(i) == colour(pixel)) {
+        REQUIRE(after.share(i) == before.share(i));
+      } else {
+        others += after.share(i) != before.share(i);
+      }
+    }
+    CHECK(others > 0);
+  }
+}
+
+TEST_CASE("sample shares: as many in all where few pixels have met noise, too") {
+  for (const uint32_t noisy : {1u, 3u, 20u}) {
+    CAPTURE(noisy);
+    std::vector<PixelSums> sums(200 * 160);
+    for (uint32_t i = 0; i < noisy; ++i) sums[1234 + 1601 * i].add(9, 9, 9);
+    const SampleShares shares(0, 200, 160, {0, 0, 200, 160}, sums.data());
+    double all = 0;
+    for (uint32_t i = 0; i < sums.size(); ++i) all += shares.mean_count(i);
+    CHECK(shares.share(1234 + 2) == SampleShares::kMost);
+    CHECK(all <= 200 * 160);
+    CHECK(all > 0.6 * 200 * 160);
+  }
+}
+
 TEST_CASE("sample shares: a black picture and a calm one get the same for every pixel") {
   std::vector<PixelSums> sums(kWidth * kHeight);
-  CHECK(SampleShares(0, kWidth, kHeight, sums.data()).even());
+  CHECK(SampleShares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data()).even());
   for (PixelSums& s : sums) s.add(0.5, 0.25, 2);
-  CHECK(SampleShares(0, kWidth, kHeight, sums.data()).even());
+  CHECK(SampleShares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data()).even());
   const SampleShares same(7);
   CHECK(same.even());
   CHECK(same.first(5) == 7);
@@ -107,12 +145,12 @@ TEST_CASE("sample shares: a black picture and a calm one get the same for every 
 }
 
 TEST_CASE("sample shares: ranges of samples follow on each other, and nothing overflows") {
-  const std::vector<PixelSums> sums = pilot();
-  const SampleShares whole(0, kWidth, kHeight, sums.data());
+  const std::vector<PixelSums> sums = first_samples();
+  const SampleShares whole(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
   for (uint32_t pixel = 0; pixel < kWidth * kHeight; pixel += 7) {
     uint64_t before = 0;
     for (const uint64_t cut : {0u, 1u, 5u, 16u, 37u, 1000u}) {
-      const SampleShares rest(cut, kWidth, kHeight, sums.data());
+      const SampleShares rest(cut, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
       REQUIRE(rest.first(pixel) == whole.count(pixel, cut));
       REQUIRE(whole.count(pixel, cut) + rest.count(pixel, 123) == whole.count(pixel, cut + 123));
       REQUIRE(whole.count(pixel, cut) >= before);
@@ -121,14 +159,10 @@ TEST_CASE("sample shares: ranges of samples follow on each other, and nothing ov
       REQUIRE(most >= 123);
       REQUIRE(rest.count(pixel, most) == n);
       REQUIRE(rest.count(pixel, most + 1) > n);
-      REQUIRE(SampleShares::may_be(n, 123, 1));
     }
     REQUIRE(whole.count(pixel, 1) >= 1);
-    REQUIRE(whole.count(pixel, kMaxSpp) <= kMaxSpp);
-    REQUIRE(whole.count(pixel, kMaxSpp) >= kMaxSpp / 4);
+    REQUIRE(whole.count(pixel, kMaxSpp) == kMaxSpp / 8 * whole.share(pixel));
   }
-  CHECK(!SampleShares::may_be(0, 1000, 1));
-  CHECK(!SampleShares::may_be(1000, 100, 1));
 }
 
 TEST_CASE("allocation: samples go where the noise is, the error is less, and its estimate right") {
@@ -193,6 +227,75 @@ TEST_CASE("allocation: stopped at any moment and resumed, it comes to the same b
   }
 }
 
+TEST_CASE("allocation: no sample is drawn twice, by the picture or its probes, and none in vain") {
+  std::set<std::pair<uint32_t, uint64_t>> drawn;
+  const Quarters quarters;
+  const auto once = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
+                        uint32_t worker) {
+    for (const uint32_t pixel : pixels) {
+      for (uint32_t i = 0; i < count; ++i) REQUIRE(drawn.insert({pixel, first + i}).second);
+    }
+    return quarters(pixels, first, count, sums, worker);
+  };
+  Settings settings = by_noise(100);
+  settings.estimate_error = true;
+  const Exposure whole = expose(settings, 1, once);
+  CHECK(whole.error);
+  uint64_t of_picture = 0;
+  for (const auto& [pixel, number] : drawn) of_picture += number < whole.samples[pixel];
+  CHECK(of_picture == std::accumulate(whole.samples.begin(), whole.samples.end(), uint64_t{0}));
+  CHECK(of_picture < drawn.size());
+  CHECK(of_picture > 0.79 * static_cast<double>(drawn.size()));  // a pixel in four is a probe, of so small a picture
+}
+
+TEST_CASE("allocation: a finished render that is resumed says again which samples it has") {
+  for (const Window crop : {Window{0, 0, 0, 0}, {0, 0, 8, 8}}) {  // all; the calmest, of one share
+    Settings settings = by_noise(13);
+    settings.first_sample = 19, settings.crop = crop;
+    const Quarters quarters;
+    std::optional<SavedRender> saved;
+    for (int turn = 0; turn < 2; ++turn) {
+      const std::optional<SavedRender> before = saved;
+      expose(settings, 1, quarters,
+             {.resume = before ? &*before : nullptr, .save = [&](SavedRender&& state) { saved = std::move(state); }});
+      REQUIRE(saved);
+      CHECK(saved->number(kWholeSamples) == 13);
+    }
+  }
+  // Where it stops before, no pixel has more than its share of whole samples, or there are none.
+  Settings settings = by_noise(64);
+  for (const int moment : {3, 10, 20, 40}) {
+    std::optional<SavedRender> saved;
+    std::atomic<int> asked{0};
+    expose(settings, 1, Quarters{},
+           {.stop = [&] { return asked++ >= moment; }, .save = [&](SavedRender&& state) { saved = std::move(state); }});
+    REQUIRE(saved);
+    if (!saved->numbers.contains(kWholeSamples)) continue;
+    const SampleShares shares = SampleShares::saved(0, kWidth, kHeight, *saved).value();
+    saved->get<uint64_t>("picture.samples", kWidth, [&](size_t i, uint64_t n) {
+      REQUIRE(n == shares.count(static_cast<uint32_t>(i), saved->number(kWholeSamples)));
+    });
+  }
+}
+
+TEST_CASE("allocation: a checkpoint whose pixels have not their shares is refused") {
+  const Settings settings = by_noise(64);
+  std::optional<SavedRender> saved;
+  expose(settings, 1, Quarters{}, {.save = [&](SavedRender&& state) { saved = std::move(state); }});
+  REQUIRE(saved);
+  saved->path = "c.exr";
+  const auto refused = [&](SavedRender state, const std::string& channel, uint32_t word, const char* why) {
+    for (SavedRender::Channel& c : state.channels) {
+      if (c.name == channel) c.words.back() = word;
+    }
+    CHECK_THROWS_WITH_AS(expose(settings, 1, Quarters{}, {.resume = &state}), why, UsageError);
+  };
+  refused(*saved, "picture.samples.0", 7, "c.exr: cannot resume: damaged: its pixels have not their shares of samples");
+  refused(*saved, "shares.0", 7, "c.exr: cannot resume: damaged: its shares of samples cannot be");
+  std::erase_if(saved->channels, [](const SavedRender::Channel& c) { return c.name == "shares.0"; });
+  refused(*saved, "", 0, "c.exr: cannot resume: damaged: its shares of samples cannot be");
+}
+
 TEST_CASE("allocation: with --time it is resumed with the shares that it had, whatever the time") {
   Settings settings = by_noise(kMaxSpp);
   settings.seconds = 10, settings.estimate_error = true;
@@ -208,35 +311,47 @@ TEST_CASE("allocation: with --time it is resumed with the shares that it had, wh
                                 .stop = [&] { return now > 5; },
                                 .save = [&](SavedRender&& state) { saved = std::move(state); }});
   REQUIRE(saved);
-  CHECK(SampleShares::are_in(*saved));
+  CHECK(saved->has(SampleShares::kSaved));
   const Exposure whole =
       expose(settings, 1, clocked, {.clock = [&] { return now; }, .resume = &*saved, .save = [](SavedRender&&) {}});
   const double last = now;
   CHECK(last == doctest::Approx(10).epsilon(0.05));
   CHECK(mean(whole.samples) == doctest::Approx(2 * mean(half.samples)).epsilon(0.1));
   CHECK(std::ranges::max(whole.samples) > 4 * std::ranges::min(whole.samples));
+}
 
-  saved->path = "c.exr";
-  for (SavedRender::Channel& channel : saved->channels) {
-    if (channel.name == "shares.0") channel.words[17] = 5;
+TEST_CASE("allocation: with --time and pixels of one small share, they end with as many samples each, in time") {
+  Settings settings = by_noise(kMaxSpp);
+  settings.seconds = 10, settings.crop = {0, 0, 16, 16};
+  for (const double a_sample : {0.0001, 0.001, 0.02}) {
+    CAPTURE(a_sample);
+    double now = 0;
+    const auto clocked = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
+                             uint32_t worker) {
+      now += a_sample * static_cast<double>(pixels.size() * count) / (16 * 16);
+      return Quarters{}(pixels, first, count, sums, worker);
+    };
+    const Exposure got = expose(settings, 1, clocked, {.clock = [&] { return now; }});
+    CHECK(now == doctest::Approx(10).epsilon(0.02));
+    CHECK(std::ranges::max(got.samples) - std::ranges::min(got.samples) <= 1);
   }
-  CHECK_THROWS_WITH_AS(expose(settings, 1, clocked, {.clock = [&] { return now; }, .resume = &*saved}),
-                       "c.exr: cannot resume: damaged: its shares of samples cannot be", UsageError);
 }
 
 TEST_CASE(
-    "allocation: a pilot that takes an eighth of the time is for nothing, and one that is stopped ends the render") {
+    "allocation: with --time it draws the first samples of its window alone, whatever the time; or none if it is "
+    "stopped") {
   Settings settings = by_noise(kMaxSpp);
-  settings.seconds = 1;
+  settings.seconds = 1, settings.crop = {10, 9, 20, 21};
   double now = 0;
-  const Quarters quarters;
+  uint64_t drawn = 0;
   const auto slow = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
                         uint32_t worker) {
-    now += 0.2 * static_cast<double>(pixels.size() * count) / (kWidth * kHeight);
-    return quarters(pixels, first, count, sums, worker);
+    now += 2.0 * static_cast<double>(pixels.size() * count) / (20 * 21), drawn += pixels.size() * count;
+    return Quarters{}(pixels, first, count, sums, worker);
   };
   const Exposure got = expose(settings, 1, slow, {.clock = [&] { return now; }});
-  CHECK(std::ranges::max(got.samples) <= 1 + std::ranges::min(got.samples));
+  CHECK(drawn == 20 * 21);
+  CHECK(std::ranges::max(got.samples) == 1);
 
   settings.seconds = 0, settings.spp = 16;
   const Exposure stopped = expose(settings, 1, Quarters{}, {.stop = [] { return true; }});

@@ -1,9 +1,9 @@
 #include "tools/checkpoint.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <utility>
+#include <vector>
 
 #include "core/rounds.h"
 #include "core/types.h"
@@ -14,32 +14,10 @@ namespace {
 
 constexpr const char* kFirstSample = "first-sample";
 
-// The least and the most samples that a pixel has.
-std::pair<uint64_t, uint64_t> samples_of(const SavedRender& state, const Settings& settings) {
-  uint64_t least = kMaxSpp, most = 0;
-  state.get<uint64_t>("picture.samples", settings.width, [&](size_t, uint64_t samples) {
-    least = std::min(least, samples);
-    most = std::max(most, samples);
-  });
-  return {least, most};
-}
-
-// The samples that every pixel has, or its share of them; none if some have more than others, if light paths have more, or if they are
-// in two halves.
+// None if the state is of no whole samples.
 std::vector<SampleRange> ranges_of(const SavedRender& state, const Settings& settings) {
-  if (settings.adaptive_batch > 0 || !state.has_film("picture")) return {};
-  if (state.numbers.contains(kWholeSamples)) {
-    return {{settings.first_sample, settings.first_sample + state.number(kWholeSamples)}};
-  }
-  const auto [least, most] = samples_of(state, settings);
-  if (least != most || most == 0) return {};
-  bool even = true;
-  if (state.has_film("light")) {
-    state.get<uint64_t>("light.samples", settings.width,
-                        [&, all = most](size_t, uint64_t n) { even = even && n == all; });
-  }
-  if (!even) return {};
-  return {{settings.first_sample, settings.first_sample + most}};
+  if (!state.numbers.contains(kWholeSamples)) return {};
+  return {{settings.first_sample, settings.first_sample + state.number(kWholeSamples)}};
 }
 
 }  // namespace

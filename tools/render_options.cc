@@ -164,7 +164,7 @@ void add_machine_flags(CLI::App& app, RenderOptions& o) {
 void add_allocation_flag(CLI::App& app, RenderOptions& o) {
   add_choice<Allocation>(
       app, "--allocation", o.settings.allocation, {{"even", Allocation::kEven}, {"noise", Allocation::kNoise}},
-      "Which pixels get how many samples: all -s, or more where a pilot of one a pixel finds noise and "
+      "Which pixels get how many samples: all -s, or more where the first of each finds noise and "
       "fewer where it is calm, -s on average; noise with --time in place of -s")
       ->default_str("even");
 }
@@ -195,10 +195,10 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
          "Picture of the samples that each pixel took: colours in a .png, their number in an .exr, .pfm or .hdr")
       ->type_name("FILE");
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
-  app.add_option(
-         "--samples", o.samples,
-         "Only samples A to B - 1 of every pixel, from 0 on, in place of -s; the picture, an .exr, is then a film "
-         "file, with exact sums for lanewise merge")
+  app.add_option("--samples", o.samples,
+                 "Only samples A to B - 1 of every pixel, or its share of them, from 0 on, in place of -s; the "
+                 "picture, an .exr, is then a film "
+                 "file, with exact sums for lanewise merge")
       ->check(sample_range())
       ->type_name("A:B");
   CLI::Option* checkpoint =

@@ -24,6 +24,7 @@ Plan small_plan(const FilmFile& film) {
   Settings settings;
   settings.width = film.width, settings.height = film.height, settings.crop = film.state.area;
   settings.spp = kMostSamples, settings.threads = 1, settings.wave = 64;
+  if (film.state.has(SampleShares::kSaved)) settings.allocation = Allocation::kNoise;
   if (film.state.has_film("half0")) {
     settings.noise = 0.1;
     settings.crop = {};
