@@ -102,7 +102,7 @@ TEST_CASE("error estimate: exact squares give their relative mean, and a calm pi
   const MeanPicture scene = flat(20, 10, 0.49f, 0);
   const auto square = [](size_t) { return std::array<double, 3>{0.01, 0.02, 0.03}; };
   const ErrorEstimate error = estimate_error(scene, square, 3);
-  CHECK(error.mrse == doctest::Approx(0.02 / 0.25).epsilon(1e-5));
+  CHECK(error.mrse == doctest::Approx(0.02 / 0.25).epsilon(1e-5).scale(0));
   CHECK(error.low < error.mrse);
   CHECK(error.mrse < error.high);
   CHECK(error.high < 1.2 * error.mrse);
@@ -120,7 +120,7 @@ TEST_CASE("error estimate: what independent and low-discrepancy samples are off 
       const Exposure got = expose(picture(spp), 2, draw);
       REQUIRE(got.error);
       const double truth = measured(got, draw);
-      CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.2));
+      CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.2).scale(0));
       CHECK(got.error->low < truth);
       CHECK(truth < got.error->high);
     }
@@ -132,7 +132,7 @@ TEST_CASE("error estimate: a firefly's error is known from its pixel alone, what
   const Exposure got = expose(picture(64), 1, draw);
   const double truth = measured(got, draw);
   CHECK(truth > 1);
-  CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.1));
+  CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.1).scale(0));
 }
 
 TEST_CASE("error estimate: nothing is said of one sample, of -a, or where it is not asked for") {
@@ -163,21 +163,21 @@ TEST_CASE("error estimate: --noise knows it from its halves") {
   settings.noise = 0.1;
   const Exposure got = expose(settings, 1, draw);
   REQUIRE(got.error);
-  CHECK(got.error->mrse == doctest::Approx(measured(got, draw)).epsilon(0.15));
+  CHECK(got.error->mrse == doctest::Approx(measured(got, draw)).epsilon(0.15).scale(0));
   CHECK(got.error->mrse < 0.01);
 }
 
 TEST_CASE("error estimate: of a rendered picture, with either sampler") {
 #ifdef NDEBUG
-  const uint32_t samples = 16, many = 1024;
+  const uint32_t many = 4096;
 #else
-  const uint32_t samples = 4, many = 64;
+  const uint32_t many = 512;
 #endif
   Settings settings;
   settings.width = 64, settings.height = 48, settings.max_depth = 3;
   settings.spp = many, settings.seed = 1;
   const Image truth = render(make_plan(test::test_box(), settings)).image;
-  settings.spp = samples, settings.seed = 0;
+  settings.spp = 64, settings.seed = 0;
   settings.estimate_error = true;
   for (const Sampler sampler : {Sampler::kSobol, Sampler::kRandom}) {
     settings.sampler = sampler;
@@ -185,7 +185,10 @@ TEST_CASE("error estimate: of a rendered picture, with either sampler") {
     const double measured = compare_images(got.image, truth).mrse;
     REQUIRE(got.stats.error);
     CAPTURE(measured);
-    CHECK(got.stats.error->mrse == doctest::Approx(measured).epsilon(0.2));
+    CHECK(measured > got.stats.error->low);
+    CHECK(measured < got.stats.error->high);
+    CHECK(got.stats.error->mrse / measured > 0.6);
+    CHECK(got.stats.error->mrse / measured < 2.5);
   }
 }
 
