@@ -2,9 +2,9 @@
 //
 // A film file is an OpenEXR picture: R, G and B are its radiance, for any program to show, and what is more lies in channels of
 // 32-bit words beside them: for each of picture.r, .g, .b, .y, .y2 (core/pixel_sums.h) and picture.samples its words, lowest
-// first, as picture.r.0 to picture.r.3; and where there are light paths (core/plan_light_paths.h) the same of `light`, whose samples
-// are passes; and where pixels have shares of the samples (core/sample_shares.h), `shares`. The header says what the samples hang on (identity), which samples they are, and has a
-// checksum over all of this.
+// first, as picture.r.0 to picture.r.3; and where there are light paths (core/plan_light_paths.h) the same of `light`, whose
+// samples are passes; and where pixels have shares of the samples (core/sample_shares.h), `shares`. The header says what the
+// samples hang on (identity), which samples they are, and has a checksum over all of this.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "core/dimensions.h"
@@ -102,18 +103,28 @@ class Rounds {
   // Sample 0 of every pixel. False if the render was stopped before that.
   bool draw_first(const Settings& settings) {
     const std::vector<Tile> tiles = make_tiles(settings, 1);
-    std::atomic<uint64_t> rays{0};
-    run_workers(
-        workers_, tiles.size(),
+    run(
+        tiles.size(),
         [&](size_t item, uint32_t worker) {
           if (intervals_.stopped()) return uint64_t{0};
           for (const uint32_t pixel : tiles[item].pixels) film_.sums[pixel] = {};
-          rays += draw_(tiles[item].pixels, 0, 1, film_.sums.data(), worker);
-          return uint64_t{0};
+          return draw_(tiles[item].pixels, 0, 1, film_.sums.data(), worker);
         },
         [&](const Progress&) { report(0); });
-    rays_ += rays;
     return !intervals_.stopped();
+  }
+
+  // body(item, worker), on all workers: the rays that it took, which are counted.
+  template <class Body>
+  void run(size_t items, const Body& body, const std::function<void(const Progress&)>& progress) {
+    std::atomic<uint64_t> rays{0};
+    const auto counted = [&](size_t item, uint32_t worker) {
+      const uint64_t took = body(item, worker);
+      rays += took;
+      return took;
+    };
+    run_workers(workers_, items, counted, progress);
+    rays_ += rays;
   }
 
   bool timed() const { return settings_.seconds > 0; }
@@ -242,15 +253,9 @@ class Rounds {
       const uint64_t first = settings_.first_sample + light_film_->passes(), left = passes - light_film_->passes();
       const uint64_t some = std::min(left, light_->passes_at_a_time(workers_));
       const std::vector<LightPiece> pieces = light_->pieces(first, some, workers_);
-      std::atomic<uint64_t> rays{0};
-      run_workers(
-          workers_, pieces.size(),
-          [&](size_t item, uint32_t worker) {
-            rays += light_->draw(pieces[item], *light_film_, worker);
-            return uint64_t{0};
-          },
+      run(
+          pieces.size(), [&](size_t item, uint32_t worker) { return light_->draw(pieces[item], *light_film_, worker); },
           [&](const Progress&) { report(static_cast<double>(done_)); });
-      rays_ += rays;
       light_film_->drew(some);
       intervals_.drew();
       if (intervals_.save_due()) intervals_.save([&] { return state(); });
@@ -277,9 +282,8 @@ class Rounds {
       const uint32_t more = probes_behind(cuts.back(), count);
       cuts.push_back(probes_.end_of_portion(cuts.back(), std::max(1u, kWaves * settings_.wave / std::max(more, 1u))));
     }
-    std::atomic<uint64_t> rays{0};
-    run_workers(
-        workers_, cuts.size() - 1,
+    run(
+        cuts.size() - 1,
         [&](size_t item, uint32_t worker) {
           const size_t begin = cuts[item], end = cuts[item + 1];
           const uint32_t more = probes_behind(begin, count);
@@ -288,13 +292,12 @@ class Rounds {
           const std::vector<uint32_t> pixels(first + static_cast<ptrdiff_t>(begin),
                                              first + static_cast<ptrdiff_t>(end));
           probes_.exchange(film_, begin, end);
-          rays += draw_(pixels, probes_.next_sample(begin), more, film_.sums.data(), worker);
+          const uint64_t rays = draw_(pixels, probes_.next_sample(begin), more, film_.sums.data(), worker);
           probes_.exchange(film_, begin, end);
-          return uint64_t{0};
+          return rays;
         },
         nullptr);
     probes_.drew(count);
-    rays_ += rays;
   }
 
   // Samples of a probe, if the picture gets so many more.

@@ -1,5 +1,5 @@
-// Which pixels get how many samples: -s and --time the same for all or their shares of so many, -a batches until a pixel has converged, --noise what the
-// noise demands. Both renderers draw their samples through it, and differ only in how they draw.
+// Which pixels get how many samples: -s and --time the same for all or their shares of so many, -a batches until a pixel has
+// converged, --noise what the noise demands. Both renderers draw their samples through it, and differ only in how they draw.
 #pragma once
 
 #include <cstdint>

@@ -22,13 +22,15 @@ template <class F>
 void for_each_by_groups(const Window& window, const F& f) {
   constexpr uint32_t kBlock = SampleShares::kBlock;
   const uint32_t x_end = window.x + window.width, y_end = window.y + window.height;
+  const auto is_inside = [&](uint32_t x, uint32_t y) {
+    return x >= window.x && x < x_end && y >= window.y && y < y_end;
+  };
   for (uint32_t row = window.y / kBlock * kBlock; row < y_end; row += kBlock) {
     for (uint32_t column = window.x / kBlock * kBlock; column < x_end; column += kBlock) {
       for (uint32_t colour = 0; colour < SampleShares::kColours; ++colour) {
-        for (uint32_t y = std::max(row, window.y); y < std::min(row + kBlock, y_end); ++y) {
-          for (uint32_t x = std::max(column, window.x); x < std::min(column + kBlock, x_end); ++x) {
-            if (SampleShares::colour(x, y) == colour) f(x, y);
-          }
+        for (uint32_t k = 0; k < kBlock * kBlock; ++k) {
+          const uint32_t x = column + k % kBlock, y = row + k / kBlock;
+          if (is_inside(x, y) && SampleShares::colour(x, y) == colour) f(x, y);
         }
       }
     }

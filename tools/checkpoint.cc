@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFirstSample = "first-sample";
 
-// None if the state is of no whole samples.
+// None where some pixels, or light paths, have more than their share of whole samples, or others.
 std::vector<SampleRange> ranges_of(const SavedRender& state, const Settings& settings) {
   if (!state.numbers.contains(kWholeSamples)) return {};
   return {{settings.first_sample, settings.first_sample + state.number(kWholeSamples)}};

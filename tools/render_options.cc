@@ -162,10 +162,10 @@ void add_machine_flags(CLI::App& app, RenderOptions& o) {
 }
 
 void add_allocation_flag(CLI::App& app, RenderOptions& o) {
-  add_choice<Allocation>(
-      app, "--allocation", o.settings.allocation, {{"even", Allocation::kEven}, {"noise", Allocation::kNoise}},
-      "Which pixels get how many samples: all -s, or more where the first of each finds noise and "
-      "fewer where it is calm, -s on average; noise with --time in place of -s")
+  add_choice<Allocation>(app, "--allocation", o.settings.allocation,
+                         {{"even", Allocation::kEven}, {"noise", Allocation::kNoise}},
+                         "Which pixels get how many samples: all -s, or more where the first of each finds noise and "
+                         "fewer where it is calm, -s on average; noise with --time in place of -s")
       ->default_str("even");
 }
 
@@ -197,8 +197,7 @@ void add_output_flags(CLI::App& app, RenderOptions& o) {
   app.add_option("--stats", o.stats, "Write statistics as JSON")->type_name("FILE");
   app.add_option("--samples", o.samples,
                  "Only samples A to B - 1 of every pixel, or its share of them, from 0 on, in place of -s; the "
-                 "picture, an .exr, is then a film "
-                 "file, with exact sums for lanewise merge")
+                 "picture, an .exr, is then a film file, with exact sums for lanewise merge")
       ->check(sample_range())
       ->type_name("A:B");
   CLI::Option* checkpoint =
