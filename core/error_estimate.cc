@@ -75,11 +75,12 @@ std::array<Sums, kKinds> sum_squares(const MeanPicture& picture, uint32_t thread
 // f(pixel) for the up to eight pixels around (x, y) that are independent of it.
 template <class F>
 void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
-  const uint32_t column = picture.square_column(x), row = picture.square_row(y);
+  // Where its square begins, in the whole picture.
+  const uint32_t column = picture.square_column(x) * picture.side, row = picture.square_row(y) * picture.side;
   for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
-    const bool same_row = picture.square_row(j) == row;
+    const bool same_row = j + picture.row - row < picture.side;
     for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
-      const bool together = same_row && picture.square_column(i) == column;
+      const bool together = same_row && i + picture.column - column < picture.side;
       if (!together) f(picture.pixels[size_t{j} * picture.width + i]);
     }
   }
@@ -88,21 +89,17 @@ void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, cons
 // Is all the pixel's variance one bright path's, such as few neighbours have met? One sample F among n dark ones has the variance
 // (F / n)^2 of their mean, and lifts it by F / n. (That is what it is off by, too, whatever the other samples are like.)
 bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
-  constexpr double kOutlier = 16, kAlike = 4;
-  double around = 0;
-  std::array<float, 8> variances{};
-  size_t neighbours = 0;
+  constexpr float kOutlier = 16, kAlike = 4;
+  int neighbours = 0, calmer = 0;
   for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) {
-    variances[neighbours++] = pixel.variance;
-    around += luminance_of(pixel.rgb);
+    neighbours += 1;
+    calmer += kOutlier * pixel.variance < centre.variance;
   });
-  if (neighbours == 0) return false;
-  const double lift = luminance_of(centre.rgb) - around / static_cast<double>(neighbours), lift2 = lift * lift;
-  const bool is_lift = lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
-  if (!is_lift) return false;
-  auto* const median = variances.begin() + neighbours / 2;
-  std::nth_element(variances.begin(), median, variances.begin() + neighbours);
-  return centre.variance > kOutlier * *median;
+  if (calmer <= neighbours / 2) return false;  // the median is not among them
+  double around = 0;
+  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) { around += luminance_of(pixel.rgb); });
+  const double lift = luminance_of(centre.rgb) - around / neighbours, lift2 = lift * lift;
+  return lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
 }
 
 // variance: relative, of what the terms have been multiplied by.

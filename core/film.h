@@ -3,26 +3,17 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "core/image.h"
 #include "core/settings.h"
+#include "core/zeroed_pages.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
 
-// Leaves new elements as the memory is.
-template <class T>
-struct UninitializedAllocator : std::allocator<T> {
-  template <class U>
-  void construct(U*) {}
-};
-
 struct Film {
-  // To be set to {} by the thread that is to add to them: then all threads share the work of touching fresh pages, and each
-  // has its own near.
-  std::vector<PixelSums, UninitializedAllocator<PixelSums>> sums;
+  std::vector<PixelSums, ZeroedPages<PixelSums>> sums;  // {} at first
   std::vector<uint64_t> samples;  // behind each pixel's sums; 0: they are not looked at
 
   explicit Film(size_t pixels) : sums(pixels), samples(pixels) {}

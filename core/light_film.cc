@@ -1,6 +1,10 @@
 #include "core/light_film.h"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "hwy/cache_control.h"
 
 #include "core/packed_sums.h"
 #include "core/types.h"
@@ -8,33 +12,39 @@
 
 namespace lanewise {
 
-LightFilm::LightFilm(size_t pixels) : film_(pixels) { std::ranges::fill(film_.sums, PixelSums{}); }
+LightFilm::LightFilm(size_t pixels) : film_(pixels), band_bits_(static_cast<int>(std::bit_width(pixels / kBands))) {}
 
 // In the order of the bands, so that each lock is taken once at most.
-void LightFilm::add(const std::vector<Splat>& splats) {
-  const size_t band = (film_.sums.size() + kBands - 1) / kBands;
+void LightFilm::add(std::vector<Splat>& splats) {
   std::array<size_t, kBands + 1> begin{};
-  for (const Splat& splat : splats) ++begin[splat.pixel / band + 1];
+  for (const Splat& splat : splats) ++begin[band_of(splat.pixel) + 1];
   for (size_t k = 0; k < kBands; ++k) begin[k + 1] += begin[k];
-  std::vector<Splat> sorted(splats.size());
   std::array<size_t, kBands + 1> next = begin;
-  for (const Splat& splat : splats) sorted[next[splat.pixel / band]++] = splat;
+  for (size_t k = 0; k < kBands; ++k) {
+    while (next[k] < begin[k + 1]) {
+      const size_t home = band_of(splats[next[k]].pixel);
+      if (home != k) std::swap(splats[next[k]], splats[next[home]]);
+      ++next[home];
+    }
+  }
   for (size_t k = 0; k < kBands; ++k) {
     if (begin[k] == begin[k + 1]) continue;
     const std::lock_guard lock(locks_[k]);
     for (size_t i = begin[k]; i < begin[k + 1]; ++i) {
-      film_.sums[sorted[i].pixel].add(sorted[i].r, sorted[i].g, sorted[i].b);
+      constexpr size_t kAhead = 8;  // pixels lie in two cache lines each
+      const PixelSums& soon = film_.sums[splats[std::min(i + kAhead, splats.size() - 1)].pixel];
+      hwy::Prefetch(&soon.r), hwy::Prefetch(&soon.y2);
+      film_.sums[splats[i].pixel].add(splats[i].r, splats[i].g, splats[i].b);
     }
   }
 }
 
 void LightFilm::add(ByteReader& packed) {
-  const size_t band = (film_.sums.size() + kBands - 1) / kBands;
   std::unique_lock<std::mutex> lock;
   for (size_t last = kBands; !packed.empty();) {
     const auto pixel = packed.get<uint32_t>();
     if (pixel >= film_.sums.size()) throw Error("light paths beyond the picture");
-    const size_t k = pixel / band;
+    const size_t k = band_of(pixel);
     if (k != last) {
       if (lock) lock.unlock();
       lock = std::unique_lock(locks_[k]);

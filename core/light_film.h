@@ -17,8 +17,8 @@ class LightFilm {
  public:
   explicit LightFilm(size_t pixels);
 
-  // From any thread.
-  void add(const std::vector<Splat>& splats);
+  // From any thread. Leaves the list in another order.
+  void add(std::vector<Splat>& splats);
 
   // What pack_splats() has made of some; from any thread.
   void add(ByteReader& packed);
@@ -32,9 +32,11 @@ class LightFilm {
   Film& film() { return film_; }
 
  private:
-  static constexpr size_t kBands = 64;  // of pixels, with a lock each
+  static constexpr size_t kBands = 64;  // of pixels, with a lock each, at most
+  size_t band_of(uint32_t pixel) const { return pixel >> band_bits_; }
 
   Film film_;
+  int band_bits_;
   std::array<std::mutex, kBands> locks_;
 };
 

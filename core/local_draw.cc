@@ -57,7 +57,7 @@ Drawn LocalDraw::draw_light(const LightPiece& piece, uint32_t worker,
   Wave& wave = this->wave(worker);
   const Profile& profile = wave.profiler().profile;
   const Drawn before{profile.rays(), profile.invalid_samples};
-  std::vector<Splat> splats;
+  std::vector<Splat>& splats = splats_[worker];
   for (uint32_t done = 0; done < piece.count; done += wave.size()) {
     LightPiece part = piece;
     part.first += done;
@@ -65,7 +65,7 @@ Drawn LocalDraw::draw_light(const LightPiece& piece, uint32_t worker,
     wave.run_light_paths(part, splats);
     if (splats.size() >= kMostSplats) take(splats), splats.clear();
   }
-  take(splats);
+  take(splats), splats.clear();
   return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
 }
 

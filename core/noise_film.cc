@@ -27,7 +27,6 @@ NoiseFilm::NoiseFilm(uint32_t width, uint32_t height, const Window& window, doub
   for (Half& half : halves_) {
     half.converged.resize(blocks());
     half.ended.resize(blocks());
-    std::ranges::fill(half.film.sums, PixelSums{});
   }
   left_ = static_cast<double>(size_t{kHalves} * blocks() * kBlock * kBlock) * count_;
 }

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 namespace lanewise {
 
@@ -52,7 +53,17 @@ class ExactSum {
   // To the nearest T.
   template <class T>
   T as() const {
-    return static_cast<T>(units_) * static_cast<T>(1 / static_cast<double>(Uint128{1} << kPlaces));
+    if constexpr (std::is_same_v<T, double>) {
+      // The first 63 digits, which processors convert by themselves; the last of them tells whether anything is below.
+      const auto high = static_cast<uint64_t>(units_ >> 64), low = static_cast<uint64_t>(units_);
+      const int below = high == 0 ? static_cast<int>(low >> 63) : 65 - std::countl_zero(high);
+      const bool rest = (units_ & ((Uint128{1} << below) - 1)) != 0;
+      const auto digits = static_cast<int64_t>(units_ >> below) | int64_t{rest};
+      const double unit = std::bit_cast<double>(static_cast<uint64_t>(1023 + below - kPlaces) << 52);
+      return static_cast<double>(digits) * unit;
+    } else {
+      return static_cast<T>(units_) * static_cast<T>(1 / static_cast<double>(Uint128{1} << kPlaces));
+    }
   }
   Uint128 units() const { return units_; }
   bool operator==(const ExactSum&) const = default;

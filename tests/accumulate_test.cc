@@ -161,6 +161,23 @@ TEST_CASE("pixel sums: each number is rounded to the nearest unit, to the even o
   CHECK(most.units() == ~Uint128{0});
 }
 
+TEST_CASE("pixel sums: as a double they are rounded to the nearest, to the even one of two") {
+  std::mt19937_64 rng(6);
+  for (int i = 0; i < 100000; ++i) {
+    Uint128 units = ((Uint128{rng()} << 64) | rng()) >> (rng() % 128);
+    // Every third ends in a one and zeros: among them are those that lie between two doubles.
+    if (i % 3 == 0) {
+      const auto zeros = rng() % 75;
+      units = (units >> zeros | 1) << zeros;
+    }
+    REQUIRE(ExactSum<72>(units).as<double>() == std::ldexp(static_cast<double>(units), -72));
+  }
+  for (const Uint128 units : {Uint128{0}, Uint128{1}, (Uint128{1} << 63) - 1, Uint128{1} << 63, ~Uint128{0} >> 64,
+                              ~Uint128{0} >> 63, ~Uint128{0}}) {
+    CHECK(ExactSum<56>(units).as<double>() == std::ldexp(static_cast<double>(units), -56));
+  }
+}
+
 TEST_CASE("accumulate: samples too bright to be cut in vectors are added all the same") {
   constexpr uint32_t kSamples = 100;
   const uint32_t pixel = 0;

@@ -262,7 +262,8 @@ TEST_CASE("light film: the same sums from any thread, in any order") {
     threads.emplace_back([&, k] {
       for (size_t i = 0; i < 5; ++i) {
         const auto first = splats.begin() + static_cast<ptrdiff_t>(5000 * k + 1000 * i);
-        many.add({first, first + 1000});
+        std::vector<Splat> some(first, first + 1000);
+        many.add(some);
       }
     });
   }
@@ -282,7 +283,8 @@ TEST_CASE("light film: the same sums from any thread, in any order") {
   CHECK(many.passes() == 3);
   const Splat& s = splats.front();
   LightFilm single(kPixels);
-  single.add({s, s});
+  std::vector<Splat> twice = {s, s};
+  single.add(twice);
   const PixelMean mean = light_mean(single.film().sums[s.pixel], 4);
   const double y = luminance(double(s.r), double(s.g), double(s.b));
   CHECK(mean.rgb[0] == doctest::Approx(double(s.r) / 2));
