@@ -13,9 +13,9 @@
 namespace lanewise {
 namespace {
 
-// Relative standard error that likely_value() leaves in the estimate: measured on the course's scenes, see
-// perf/results/error_estimate.md.
-constexpr double kLikelyValueError = 0.05;
+// Relative variance that likely values leave in the estimate: where all are those that were seen, and of that which hangs on values
+// e times, up or down, what was seen. Measured on the course's scenes, see perf/results/error_estimate.md.
+constexpr double kLikelyValueError = 0.05 * 0.05, kDoubt = 0.1;
 
 // Of a picture's squared error to what its samples' variances say. More is chance: one bright path among few probes. Scrambled nets
 // are, where they do not help, as good as independent samples (Owen, Annals of Statistics 25, 1997).
@@ -37,6 +37,7 @@ struct Sums {
   double terms = 0, squares = 0;
 
   void add(double term) { terms += term, squares += term * term; }
+  double share_of(const Sums& whole) const { return whole.terms > 0 ? terms / whole.terms : 0; }
   // Relative variance of the sum of that many independent terms.
   double variance(double n) const {
     return terms > 0 && n > 1 ? std::max(0.0, squares / (terms * terms) * n - 1) / (n - 1) : 0;
@@ -72,18 +73,26 @@ std::array<Sums, kKinds> sum_squares(const MeanPicture& picture, uint32_t thread
   return all;
 }
 
-// f(pixel) for the up to eight pixels around (x, y) that are independent of it.
+// f(pixel, together) for (x, y) and the up to eight pixels around it, and whether they are in its square.
 template <class F>
-void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
+void for_each_near(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
   // Where its square begins, in the whole picture.
   const uint32_t column = picture.square_column(x) * picture.side, row = picture.square_row(y) * picture.side;
   for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
     const bool same_row = j + picture.row - row < picture.side;
     for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
       const bool together = same_row && i + picture.column - column < picture.side;
-      if (!together) f(picture.pixels[size_t{j} * picture.width + i]);
+      f(picture.pixels[size_t{j} * picture.width + i], together);
     }
   }
+}
+
+// f(pixel) for those that are independent of it.
+template <class F>
+void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
+  for_each_near(picture, x, y, [&](const PixelMean& pixel, bool together) {
+    if (!together) f(pixel);
+  });
 }
 
 // Is all the pixel's variance one bright path's, such as few neighbours have met? One sample F among n dark ones has the variance
@@ -102,43 +111,81 @@ bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelM
   return lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
 }
 
-// variance: relative, of what the terms have been multiplied by.
-ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double variance) {
+// How far a likely value is from what was seen: the square of the logarithm of their ratio.
+double doubt(const std::array<double, 3>& likely, const PixelMean& seen) {
+  return std::pow(std::log((luminance_of(likely) + kLeastRadiance) / (luminance_of(seen.rgb) + kLeastRadiance)), 2);
+}
+
+// variance: relative, of what the terms have been multiplied by. doubt: the mean over the terms.
+ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double variance, double doubt) {
   const auto pixels = static_cast<double>(picture.pixels.size());
   const auto squares = static_cast<double>(square_columns(picture) * square_rows(picture));
   // Both the picture's own error and what is known of it vary.
-  variance += 2 * all.variance(squares) + kLikelyValueError * kLikelyValueError;
+  variance += 2 * all.variance(squares) + kLikelyValueError + kDoubt * doubt;
   const double value = all.terms / pixels, spread = std::exp(1.96 * std::sqrt(variance));
   return {value, value / spread, value * spread};
 }
 
+// Towards what is likelier, by what noise of that variance explains of their difference.
+std::array<double, 3> shrink(const std::array<double, 3>& value, std::array<double, 3> towards, double variance) {
+  const double difference = luminance_of(value) - luminance_of(towards), square = difference * difference;
+  const double kept = variance < square ? 1 - variance / square : 0;
+  for (size_t c = 0; c < 3; ++c) towards[c] += kept * (value[c] - towards[c]);
+  return towards;
+}
+
 }  // namespace
 
-std::array<double, 3> likely_value(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
-  std::array<double, 3> around{}, own{};
-  for (size_t c = 0; c < 3; ++c) own[c] = centre.rgb[c];
-  double variance = centre.variance, neighbours = 0;
-  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) {
-    for (size_t c = 0; c < 3; ++c) around[c] += pixel.rgb[c];
-    variance += pixel.variance;
-    neighbours += 1;
+LikelyValues::LikelyValues(const MeanPicture& picture, uint32_t threads)
+    : picture_(picture),
+      columns_((picture.width + kBlock - 1) / kBlock),
+      rows_((picture.height + kBlock - 1) / kBlock),
+      around_(size_t{columns_} * rows_) {
+  std::vector<Group> blocks(around_.size());
+  for_each_row(threads, rows_, [&](uint32_t row) {
+    for (uint32_t y = row * kBlock; y < std::min((row + 1) * kBlock, picture.height); ++y) {
+      for (uint32_t x = 0; x < picture.width; ++x) {
+        blocks[size_t{row} * columns_ + x / kBlock].add(picture.pixels[size_t{y} * picture.width + x]);
+      }
+    }
   });
-  if (neighbours == 0) return own;
-  for (double& value : around) value /= neighbours;
-  // Neither may a pixel that has met no bright path yet pass for calm beside noisy ones.
-  variance = std::max<double>(centre.variance, variance / (neighbours + 1) / 2);
-  const double difference = luminance_of(own) - luminance_of(around);
-  const double weight = variance < difference * difference ? 1 - variance / (difference * difference) : 0;
-  for (size_t c = 0; c < 3; ++c) around[c] += weight * (own[c] - around[c]);
-  return around;
+  for_each_row(threads, rows_, [&](uint32_t row) {
+    for (uint32_t column = 0; column < columns_; ++column) {
+      Group& around = around_[size_t{row} * columns_ + column];
+      for (uint32_t j = row - std::min(row, 1u); j < std::min(row + 2, rows_); ++j) {
+        for (uint32_t i = column - std::min(column, 1u); i < std::min(column + 2, columns_); ++i) {
+          around.add(blocks[size_t{j} * columns_ + i]);
+        }
+      }
+    }
+  });
+}
+
+std::array<double, 3> LikelyValues::operator()(uint32_t x, uint32_t y, const PixelMean& centre) const {
+  Group own, near, square;
+  own.add(centre);
+  for_each_near(picture_, x, y, [&](const PixelMean& pixel, bool together) { (together ? square : near).add(pixel); });
+  if (near.pixels == 0) return own.sum;
+  Group far = around_[size_t{y / kBlock} * columns_ + x / kBlock];
+  far.take(near), far.take(square);
+  // Pixels that have met no bright path yet may not pass for calm beside noisy ones.
+  std::array<double, 3> towards = near.mean();
+  if (far.pixels > 0) {
+    towards = shrink(towards, far.mean(), std::max(near.mean_variance(), far.mean_variance() / 2) / near.pixels);
+  }
+  return shrink(own.sum, towards, std::max(own.variance, near.mean_variance() / 2));
 }
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
+  const LikelyValues likely_value(picture, threads);
   const auto relative_square = [&](uint32_t x, uint32_t y) {
     const size_t i = size_t{y} * picture.width + x;
-    return std::array{relative(squares(i), likely_value(picture, x, y, picture.pixels[i]))};
+    const std::array<double, 3> likely = likely_value(x, y, picture.pixels[i]);
+    const double term = relative(squares(i), likely);
+    return std::array{term, term * doubt(likely, picture.pixels[i])};
   };
-  return with_interval(picture, sum_squares<1>(picture, threads, relative_square)[0], 0);
+  const auto [all, doubted] = sum_squares<2>(picture, threads, relative_square);
+  return with_interval(picture, all, 0, doubted.share_of(all));
 }
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* light, const Probes& probes,
@@ -150,17 +197,19 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
       with_light.pixels[i] = sum_of(picture.pixels[i], light->pixels[i]);
   }
   const MeanPicture& whole = light ? with_light : picture;
+  const LikelyValues likely_value(whole, threads);
   const auto place = [&](size_t i) {
     return std::pair(static_cast<uint32_t>(i % picture.width), static_cast<uint32_t>(i / picture.width));
   };
-  const auto [calm, fireflies, by_light] = sum_squares<3>(whole, threads, [&](uint32_t x, uint32_t y) {
+  const auto [calm, fireflies, by_light, doubted] = sum_squares<4>(whole, threads, [&](uint32_t x, uint32_t y) {
     const size_t i = size_t{y} * picture.width + x;
     const double variance = picture.pixels[i].variance, of_light = light ? light->pixels[i].variance : 0;
-    if (variance == 0 && of_light == 0) return std::array<double, 3>{};
-    const double to_relative = relative({1, 1, 1}, likely_value(whole, x, y, whole.pixels[i]));
+    if (variance == 0 && of_light == 0) return std::array<double, 4>{};
+    const std::array<double, 3> likely = likely_value(x, y, whole.pixels[i]);
+    const double to_relative = relative({1, 1, 1}, likely);
     const bool firefly = is_firefly(picture, x, y, picture.pixels[i]);
     return std::array{firefly ? 0 : variance * to_relative, firefly ? variance * to_relative : 0,
-                      of_light * to_relative};
+                      of_light * to_relative, (variance + of_light) * to_relative * doubt(likely, whole.pixels[i])};
   });
 
   // The ratio of what squared differences say to what variances say (Cochran, Sampling Techniques, 1977, ch. 6): bright paths
@@ -178,7 +227,7 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
     std::array<double, 2>& term = terms.back();
     for (const PixelMean& one : {first, second}) {
       const PixelMean centre = light ? sum_of(one, light->pixels[i]) : one;
-      const std::array<double, 3> truth = likely_value(whole, x, y, centre);
+      const std::array<double, 3> truth = likely_value(x, y, centre);
       term[0] += relative(difference2, truth);
       term[1] += relative({v, v, v}, truth);
     }
@@ -197,7 +246,8 @@ ErrorEstimate estimate_error(const MeanPicture& picture, const MeanPicture* ligh
   const Sums all{factor * calm.terms + fireflies.terms + by_light.terms,
                  factor * factor * calm.squares + fireflies.squares + by_light.squares};
   const double share = all.terms > 0 ? factor * calm.terms / all.terms : 0;
-  return with_interval(picture, all, share * share * variance);
+  const Sums unscaled{calm.terms + fireflies.terms + by_light.terms};
+  return with_interval(picture, all, share * share * variance, doubted.share_of(unscaled));
 }
 
 }  // namespace lanewise
