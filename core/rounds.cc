@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "core/dimensions.h"
 #include "core/error_estimate.h"
@@ -182,19 +183,12 @@ class Rounds {
   }
 
   // Tiles, or groups of one share near each other, of the pixels that have less than their shares of that, all of a tile with as many
-  // samples and as many to come. They are of a wave or little more, if that leaves work for all workers.
+  // samples and as many to come. They are of a wave or little less, if that leaves work for all workers.
   std::vector<Tile> tiles_behind(uint64_t samples) const {
     constexpr uint64_t kPerWorker = 16;
     const uint64_t enough = std::min<uint64_t>(settings_.wave, paths_behind(samples) / (kPerWorker * workers_));
     std::vector<Tile> behind;
     std::map<std::array<uint64_t, 3>, Tile> parts;  // by the number of their first sample, samples drawn, and to come
-    const auto move_full_parts = [&] {
-      std::erase_if(parts, [&](auto& part) {
-        if (part.second.pixels.size() * part.first[2] < enough) return false;
-        behind.push_back(std::move(part.second));
-        return true;
-      });
-    };
     for (const Tile& tile : make_tiles(settings_, static_cast<uint32_t>(samples - done_), !shares_.even())) {
       for (auto begin = tile.pixels.begin(); begin != tile.pixels.end();) {
         const uint32_t first = *begin;
@@ -203,8 +197,9 @@ class Rounds {
         });
         if (const uint64_t more = paths_behind(first, samples)) {
           std::vector<uint32_t>& part = parts[{shares_.first(first), film_.samples[first], more}].pixels;
+          const auto together = part.size() + static_cast<size_t>(end - begin);
+          if (!part.empty() && together * more > enough) behind.push_back({std::exchange(part, {})});
           part.insert(part.end(), begin, end);
-          move_full_parts();
         }
         begin = end;
       }

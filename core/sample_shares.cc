@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/dimensions.h"
 #include "core/image_compare.h"
@@ -25,14 +26,6 @@ static_assert(kMaxSpp / SampleShares::kEven * SampleShares::kMost <= kSecondEsti
 
 // A picture's squares of any other kind are whole in these.
 static_assert(SampleShares::kSquare % kTogetherSide == 0);
-
-// The next to it, by ratio.
-uint8_t step_near(double eighths) {
-  size_t k = 0;
-  for (size_t i = 0; i + 1 < std::size(kSteps); ++i)
-    k += eighths * eighths > static_cast<double>(kSteps[i]) * kSteps[i + 1];
-  return kSteps[k];
-}
 
 struct Block {
   double pixels = 0;
@@ -75,26 +68,49 @@ std::vector<double> relative_deviations(const Grid& grid, const std::vector<Bloc
   return deviations;
 }
 
-// Steps in proportion to sigma, the largest that come to no more than kEven for each pixel. pixels: of each block.
+// Steps in proportion to sigma, each the next by ratio, the largest that come to no more than kEven for each pixel. pixels: of each
+// block.
 std::vector<uint8_t> deal(std::vector<double> sigma, const std::vector<Block>& blocks) {
   double all = 0, sum = 0;
   for (size_t b = 0; b < blocks.size(); ++b) all += blocks[b].pixels, sum += blocks[b].pixels * sigma[b];
   std::vector<uint8_t> steps(blocks.size(), SampleShares::kEven);
   if (sum == 0) return steps;
   for (double& s : sigma) s = std::max(s / (sum / all), kLeastSigma);
-  const auto deal_at = [&](double log2_scale) {
-    const double scale = std::exp2(log2_scale);
-    double dealt = 0;
-    for (size_t b = 0; b < blocks.size(); ++b) dealt += blocks[b].pixels * (steps[b] = step_near(scale * sigma[b]));
-    return dealt;
+
+  // The calmest first, and how many pixels there are before each.
+  std::vector<uint32_t> order(blocks.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](uint32_t b) { return sigma[b]; });
+  std::vector<double> pixels_before = {0};
+  for (const uint32_t b : order) pixels_before.push_back(pixels_before.back() + blocks[b].pixels);
+  // How many blocks have no more than step k, at that scale.
+  const auto up_to_step = [&](size_t k, double scale) {
+    if (k + 1 == std::size(kSteps)) return order.size();
+    const double most = std::sqrt(static_cast<double>(kSteps[k]) * kSteps[k + 1]) / scale;
+    return static_cast<size_t>(std::ranges::upper_bound(order, most, {}, [&](uint32_t b) { return sigma[b]; }) -
+                               order.begin());
+  };
+  const auto dealt = [&](double scale) {
+    double eighths = 0;
+    size_t begin = 0;
+    for (size_t k = 0; k < std::size(kSteps); ++k) {
+      const size_t end = up_to_step(k, scale);
+      eighths += (pixels_before[end] - pixels_before[begin]) * kSteps[k];
+      begin = end;
+    }
+    return eighths;
   };
   // From where all are the least to where all are the most, to a millionth.
   double low = -32, high = 16;
   for (int i = 0; i < 26; ++i) {
     const double middle = (low + high) / 2;
-    (deal_at(middle) <= SampleShares::kEven * all ? low : high) = middle;
+    (dealt(std::exp2(middle)) <= SampleShares::kEven * all ? low : high) = middle;
   }
-  deal_at(low);
+  size_t begin = 0;
+  for (size_t k = 0; k < std::size(kSteps); ++k) {
+    const size_t end = up_to_step(k, std::exp2(low));
+    for (; begin < end; ++begin) steps[order[begin]] = kSteps[k];
+  }
   return steps;
 }
 
