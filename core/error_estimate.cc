@@ -161,6 +161,8 @@ LikelyValues::LikelyValues(const MeanPicture& picture, uint32_t threads)
   });
 }
 
+size_t LikelyValues::bytes_per_pixel() { return 2 * sizeof(Group) / (kBlock * kBlock); }
+
 std::array<double, 3> LikelyValues::operator()(uint32_t x, uint32_t y, const PixelMean& centre) const {
   Group own, near, square;
   own.add(centre);

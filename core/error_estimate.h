@@ -34,6 +34,8 @@ class LikelyValues {
   // At (x, y), of a pixel whose samples have the mean `centre`: the picture's own there, or another estimate of it.
   std::array<double, 3> operator()(uint32_t x, uint32_t y, const PixelMean& centre) const;
 
+  static size_t bytes_per_pixel();  // that it takes while it is made
+
  private:
   // Sums over some pixels.
   struct Group {

@@ -2,6 +2,7 @@
 #include <array>
 #include <string>
 
+#include "core/error_estimate.h"
 #include "core/explain_topics.h"
 #include "core/film.h"
 #include "core/path_buffer.h"
@@ -93,7 +94,7 @@ MemoryNeed memory_need(const Plan& plan, bool saved) {
   // Means; with --noise also their squared errors, both in arrays that grow.
   const size_t pictures = has_light_paths(plan) ? 3 : 1;  // without, with and of the light paths alone
   const size_t mean = settings.noise > 0 ? 3 * (sizeof(PixelMean) + 3 * sizeof(float)) : pictures * sizeof(PixelMean);
-  const size_t means = settings.estimate_error ? mean : 0;
+  const size_t means = settings.estimate_error ? mean + LikelyValues::bytes_per_pixel() : 0;
   return {.scene = add_scene(plan, ignored),
           .film = drawn * pixels + picture * shown,
           .paths = thread_count(settings) * bytes_of_paths(plan),

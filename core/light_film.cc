@@ -4,11 +4,10 @@
 #include <bit>
 #include <utility>
 
-#include "hwy/cache_control.h"
-
 #include "core/packed_sums.h"
 #include "core/types.h"
 #include "core/workers.h"
+#include "hwy/cache_control.h"
 
 namespace lanewise {
 

@@ -5,9 +5,9 @@
 #include <sys/mman.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
-#include <cstdint>
 #include <type_traits>
 #include <utility>
 
