@@ -62,11 +62,12 @@ def draw(found, command):
         axis = axes[scenes.index(f['scene'])][list(PARTS).index(f['part'])]
         for sampler, colour, marker in zip(SAMPLERS, study.COLOURS, 'os'):
             axis.loglog(f['samples'], f[sampler], color=colour, marker=marker, markersize=4,
-                        label=f'{SAMPLERS[sampler]}: slope {f["slopes"][sampler]:.2f}'.replace('-0', '−0').replace('-1', '−1'))
+                        label=f'{SAMPLERS[sampler]}: slope −{-f["slopes"][sampler]:.2f}')
         ends = np.array([f['samples'][0], f['samples'][-1]])
         axis.plot(ends, f['random'][0] * 1.3 * ends[0] / ends, color='grey', linewidth=0.8, linestyle='--', label='slope −1')
         axis.set_title(f'{f["scene"]}, {f["part"]}', fontsize=9, loc='left')
-        axis.legend(fontsize=7, loc='lower left', frameon=False)
+        axis.set_ylim(top=6 * axis.get_ylim()[1])  # room for the legend
+        axis.legend(fontsize=7, loc='upper right', frameon=False)
         axis.set_xticks(f['samples'], [str(s) for s in f['samples']])
         axis.minorticks_off()
     for axis in axes[-1]:
