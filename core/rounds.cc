@@ -108,7 +108,6 @@ class Rounds {
         tiles.size(),
         [&](size_t item, uint32_t worker) {
           if (intervals_.stopped()) return uint64_t{0};
-          for (const uint32_t pixel : tiles[item].pixels) film_.sums[pixel] = {};
           return draw_(tiles[item].pixels, 0, 1, film_.sums.data(), worker);
         },
         [&](const Progress&) { report(0); });

@@ -1,10 +1,10 @@
 #include "core/zeroed_pages.h"
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <new>
 #include <vector>
-
-#include "doctest/doctest.h"
 
 namespace lanewise {
 namespace {
