@@ -69,11 +69,13 @@ def page(rows, ends, command):
 
 def draw(rows, command):
     figure, axis = plt.subplots(figsize=(7, 6))
-    for colour, scene in zip(study.COLOURS * 2, dict.fromkeys(r['scene'] for r in rows)):
+    looks = [(colour, marker) for marker in 'o^' for colour in study.COLOURS]
+    for (colour, marker), scene in zip(looks, dict.fromkeys(r['scene'] for r in rows)):
         mine = [r for r in rows if r['scene'] == scene]
         value = np.array([r['value'] for r in mine])
         bars = [value - [r['low'] for r in mine], [r['high'] for r in mine] - value]
-        axis.errorbar([r['measured'] for r in mine], value, bars, color=colour, marker='o', markersize=4, capsize=3,
+        axis.errorbar([r['measured'] for r in mine], value, bars, color=colour, marker=marker, markersize=5, capsize=3,
+                      markerfacecolor=colour if marker == 'o' else 'white',
                       linestyle='none', label=scene)
     ends = np.array([min(r['measured'] for r in rows), max(r['measured'] for r in rows)])
     axis.plot(ends, ends, color='black', linewidth=0.8)
