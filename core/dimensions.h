@@ -1,7 +1,8 @@
 // Which random numbers each decision draws. All come in sets of four, a pure function of (seed, pixel, sample, set), so
-// a picture depends on nothing else; no two decisions share a number. With --sampler sobol a set is four dimensions of a
-// low-discrepancy sequence over the pixel's samples, so that what acts together best lies in one set: the direction in which a path
-// comes to a vertex, and the light sample that it meets there.
+// a picture depends on nothing else; no two decisions of one path share a number. With --sampler sobol a set is four dimensions of a
+// low-discrepancy sequence over the pixel's samples, so that what acts together best lies in one set: the way in which a path
+// comes to a vertex, and what it does there. (At the first vertex of a camera path its light sample and its facet have the same two
+// numbers, both beside the place in the pixel: one ends a path and the other goes on with it, and no estimate multiplies them.)
 #pragma once
 
 #include <cstdint>
@@ -14,9 +15,9 @@ namespace lanewise {
 // the scene's own, which is kSetPath's: add light * light_samples + light_sample. Those of connections follow, by light and
 // sample again.
 enum RandomPurpose : uint32_t {
-  kSetPath =
-      0,  // the way to the vertex (place in the pixel, or direction from the one before); its first light sample. Of a
-          // light path at bounce 0: its point of the lamp, and its direction
+  // The way to the vertex (place in the pixel, or direction from the one before); its first light sample, and what
+  // CameraDraw names. Of a light path at bounce 0: its point of the lamp, and its direction.
+  kSetPath = 0,
   kSetChoice = 1,  // lobe, roulette, patch of the first light sample; of a light path at bounce 0: patch and caster
   kSetLens = 2,    // point on the lens (of camera paths at bounce 0; where a light path is seen, at any)
   kSetLight = 3,   // a light sample
@@ -25,6 +26,8 @@ enum RandomPurpose : uint32_t {
 
 // Which of a set's four numbers.
 enum PathDraw : uint32_t { kDrawU = 0, kDrawV = 1, kDrawEmitU = 2, kDrawEmitV = 3 };  // the last two: of light paths
+// Of camera paths: the lobe at smooth glass, which takes no light sample; the facet of the first vertex.
+enum CameraDraw : uint32_t { kDrawGlass = 2, kDrawFacetU = 2, kDrawFacetV = 3 };
 enum ChoiceDraw : uint32_t { kDrawLobe = 0, kDrawRoulette = 1, kDrawFirstPatch = 2, kDrawCaster = 3 };
 enum LightDraw : uint32_t { kDrawPatch = 0, kDrawSphere = 1, kDrawLightU = 2, kDrawLightV = 3 };
 enum EnvironmentDraw : uint32_t { kDrawSkyRow = 0, kDrawSkyColumn = 1, kDrawSkyX = 2, kDrawSkyY = 3 };

@@ -136,6 +136,23 @@ HWY_INLINE Random4 DrawRandom(const Plan& plan, const PathState& s, size_t i, ui
 HWY_INLINE Random4 DrawDirection(const Plan& plan, const PathState& s, size_t i) {
   return DrawSet(plan, s, i, direction_set(s.step.bounce));
 }
+// Of the facet that reflects or refracts them.
+struct FacetDraw {
+  VF u, v;
+};
+HWY_INLINE FacetDraw DrawFacet(const Plan& plan, const PathState& s, size_t i) {
+  if (s.step.bounce == 0 && !s.step.from_light) {
+    const Random4 random = DrawRandom(plan, s, i, kSetPath);
+    return {random.u[kDrawFacetU], random.u[kDrawFacetV]};
+  }
+  const Random4 random = DrawDirection(plan, s, i);
+  return {random.u[kDrawU], random.u[kDrawV]};
+}
+// Of the lobe at smooth glass.
+HWY_INLINE VF DrawGlassLobe(const Plan& plan, const PathState& s, size_t i) {
+  return s.step.from_light ? DrawRandom(plan, s, i, kSetChoice).u[kDrawLobe]
+                           : DrawRandom(plan, s, i, kSetPath).u[kDrawGlass];
+}
 // Of the environment sample of their step: EnvironmentDraw.
 HWY_INLINE Random4 DrawEnvironment(const Plan& plan, const PathState& s, size_t i) {
   return DrawRandom(plan, s, i, light_set(plan, s.step));

@@ -32,7 +32,7 @@ void ShadeGlass(const Plan& plan, const PathState& s, Range range) {
     const Dielectric fresnel = FresnelDielectric(plan.settings.fresnel, c, n_i, n_t);
     const VF eta = hn::Div(n_i, n_t);
 
-    const MF reflects = hn::Lt(DrawRandom(plan, s, i, kSetChoice).u[kDrawLobe], fresnel.reflectance);
+    const MF reflects = hn::Lt(DrawGlassLobe(plan, s, i), fresnel.reflectance);
     const Vec3 reflected = MulAdd(hn::Add(c, c), normal, d);
     const Vec3 refracted = MulAdd(hn::MulSub(eta, c, fresnel.cos_t), normal, Scale(eta, d));
     const Vec3 wi = Normalize(IfThenElse(reflects, reflected, refracted));

@@ -147,8 +147,7 @@ void ShadeMicrofacet(const Plan& plan, const PathState& s, Range range) {
     const Vec3 wo = {hn::Neg(Dot(d, b1)), hn::Neg(Dot(d, b2)), hn::Max(hn::Neg(Dot(d, normal)), zero)};
     const Metal metal(plan, s, i);
     const VF alpha = metal.alpha;
-    const Random4 random = DrawDirection(plan, s, i);
-    const VF u = random.u[kDrawU], v = random.u[kDrawV];
+    const auto [u, v] = DrawFacet(plan, s, i);
     const LobeSample sample = strategy == BsdfSampling::kCosine
                                   ? SampleCosine(course, wo, alpha, u, v)
                                   : SampleFacet(course, strategy == BsdfSampling::kVndf, wo, alpha, u, v);

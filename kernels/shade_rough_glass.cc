@@ -109,10 +109,10 @@ void ShadeRoughGlass(const Plan& plan, const PathState& s, Range range) {
     const Vec3 wo = {hn::Neg(Dot(d, b1)), hn::Neg(Dot(d, b2)), hn::Max(hn::Neg(Dot(d, normal)), zero)};
     const RoughGlass glass(plan, s, i, hn::Gt(Dot(d, outward), zero));
 
-    const Random4 random = DrawDirection(plan, s, i);
+    const auto [u, v] = DrawFacet(plan, s, i);
     const VF sine = hn::Sqrt(hn::MulAdd(wo.x, wo.x, hn::Mul(wo.y, wo.y)));
     const SlopeView view_o = ViewSlopes(wo.z, sine, glass.alpha);
-    const FacetSlopes m = SampleVisibleNormal(view_o, wo, sine, glass.alpha, random.u[kDrawU], random.u[kDrawV]);
+    const FacetSlopes m = SampleVisibleNormal(view_o, wo, sine, glass.alpha, u, v);
     const VF tan2 = hn::MulAdd(m.x, m.x, hn::Mul(m.y, m.y));
     const VF m_z = hn::Div(one, hn::Sqrt(hn::Add(one, tan2)));
     const Vec3 facet = {hn::Mul(m.x, m_z), hn::Mul(m.y, m_z), m_z};

@@ -25,7 +25,7 @@ using Kind = Material::Kind;
 using Pixels = std::vector<size_t>;
 
 #ifdef NDEBUG
-constexpr uint32_t kSamples = 24;
+constexpr uint32_t kSamples = 96;
 constexpr bool kTellMeans = true;
 #else
 constexpr uint32_t kSamples = 2;  // exact zeros alone; means need more
@@ -51,7 +51,7 @@ class Room {
       Settings settings;
       settings.width = kWidth, settings.height = kHeight, settings.threads = 1;
       settings.max_depth = depth;
-      settings.spp = depth < 5 ? kSamples : std::max(2u, kSamples / 2);
+      settings.spp = depth < 5 ? kSamples : std::max(2u, kSamples / 8);
       found->second = render(make_plan(scene, settings));
     }
     return found->second;

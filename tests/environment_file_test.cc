@@ -75,7 +75,7 @@ TEST_CASE("environment file: `lanewise render` lights a scene by it, which witho
   const test::TemporaryFolder folder;
   const std::string scenes = test::environment("LANEWISE_SOURCE_DIR", ".") + "/scenes/";
   const auto render = [&](std::vector<std::string> flags) {
-    flags.insert(flags.begin(), {"render", scenes + "outdoors.dae", "-r", "16", "12", "-s", "2", "-q", "-f", "a.pfm"});
+    flags.insert(flags.begin(), {"render", scenes + "outdoors.dae", "-r", "16", "12", "-s", "4", "-q", "-f", "a.pfm"});
     return test::run_process(test::program(), flags, folder.path());
   };
   const test::ProcessResult dark = render({});

@@ -139,6 +139,7 @@ TEST_CASE("film file: what is damaged, cut off or no film is refused with the fi
   const std::string bytes = encode_film(film);
   const std::string path = folder.file("bad.exr");
   std::mt19937 rng(8);
+  int harmless = 0;
   for (int i = 0; i < 60; ++i) {
     std::string bad = bytes;
     if (i % 2 == 0) {
@@ -150,8 +151,14 @@ TEST_CASE("film file: what is damaged, cut off or no film is refused with the fi
     }
     test::write_text(path, bad);
     CAPTURE(i);
-    CHECK(refusal(path).starts_with(path + ": cannot read the film: "));
+    const std::string error = refusal(path);
+    // A bit of compressed data may say the same in other words: that is no damage.
+    const bool same = error.empty() && encode_film(read_film(path, true)) == bytes;
+    CHECK((same || error.starts_with(path + ": cannot read the film: ")));
+    CHECK((!same || i % 2 == 1));
+    harmless += same;
   }
+  CHECK(harmless < 6);
   // And these in the header.
   const std::string attribute(
       "lanewise.invalid-samples\0string\0\1\0\0\0"

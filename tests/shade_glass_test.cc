@@ -21,7 +21,7 @@ Arrival arrival(const Plan& plan, const Path<float>& before) {
   a.c = std::min(std::abs(cosine), 1.0);
   a.n_i = cosine < 0 ? ior : 1;
   a.n_t = cosine < 0 ? 1 : ior;
-  a.u = reference::draw_random(plan, p, kSetChoice).u[kDrawLobe];
+  a.u = reference::draw_glass_lobe(plan, p);
   a.reflectance = reference::fresnel_dielectric(plan.settings.fresnel, a.c, a.n_i, a.n_t).reflectance;
   a.g2 = a.n_t * a.n_t - a.n_i * a.n_i * (1 - a.c * a.c);
   return a;

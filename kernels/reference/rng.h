@@ -85,6 +85,27 @@ Random4<T> draw_direction(const Plan& plan, const Path<T>& p) {
 }
 
 template <class T>
+struct FacetDraw {
+  T u, v;
+};
+
+template <class T>
+FacetDraw<T> draw_facet(const Plan& plan, const Path<T>& p) {
+  if (p.step.bounce == 0 && !p.step.from_light) {
+    const Random4<T> random = draw_random(plan, p, kSetPath);
+    return {random.u[kDrawFacetU], random.u[kDrawFacetV]};
+  }
+  const Random4<T> random = draw_direction(plan, p);
+  return {random.u[kDrawU], random.u[kDrawV]};
+}
+
+template <class T>
+T draw_glass_lobe(const Plan& plan, const Path<T>& p) {
+  return p.step.from_light ? draw_random(plan, p, kSetChoice).u[kDrawLobe]
+                           : draw_random(plan, p, kSetPath).u[kDrawGlass];
+}
+
+template <class T>
 Random4<T> draw_environment(const Plan& plan, const Path<T>& p) {
   return draw_random(plan, p, light_set(plan, p.step));
 }

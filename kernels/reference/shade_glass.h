@@ -16,7 +16,7 @@ void shade_glass(const Plan& plan, Path<T>& p) {
   const T n_i = inside ? material.ior : T(1), n_t = inside ? T(1) : material.ior;
   const Dielectric<T> fresnel = fresnel_dielectric(plan.settings.fresnel, c, n_i, n_t);
   const T eta = n_i / n_t;
-  if (draw_random(plan, p, kSetChoice).u[kDrawLobe] < fresnel.reflectance) {
+  if (draw_glass_lobe(plan, p) < fresnel.reflectance) {
     leave(p, glm::normalize(d + 2 * c * normal), vec3<T>(material.reflectance), pdf_after_delta(plan, p, !inside));
   } else {
     leave(p, glm::normalize(eta * d + (eta * c - fresnel.cos_t) * normal),

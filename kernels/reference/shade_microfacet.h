@@ -91,8 +91,7 @@ void shade_microfacet(const Plan& plan, Path<T>& p) {
   Vec3<T> b1, b2;
   frame(normal, b1, b2);
   const Vec3<T> wo(-glm::dot(d, b1), -glm::dot(d, b2), std::max(-glm::dot(d, normal), T(0)));
-  const auto random = draw_direction(plan, p);
-  const T u = random.u[kDrawU], v = random.u[kDrawV];
+  const auto [u, v] = draw_facet(plan, p);
 
   Vec3<T> wi;
   T cos_h, weight, pdf;

@@ -99,8 +99,8 @@ void shade_rough_glass(const Plan& plan, Path<T>& p) {
   frame(normal, b1, b2);
   const Vec3<T> wo(-glm::dot(d, b1), -glm::dot(d, b2), std::max(-glm::dot(d, normal), T(0)));
 
-  const auto random = draw_direction(plan, p);
-  const Slopes<T> slopes = sample_visible_normal(wo, glass.alpha, T(random.u[kDrawU]), T(random.u[kDrawV]));
+  const auto [u, v] = draw_facet(plan, p);
+  const Slopes<T> slopes = sample_visible_normal(wo, glass.alpha, u, v);
   const T tan2 = glm::dot(slopes, slopes);
   const Vec3<T> m = Vec3<T>(slopes.x, slopes.y, 1) / std::sqrt(1 + tan2);
   const T c = std::clamp(glm::dot(wo, m), T(0), T(1));
