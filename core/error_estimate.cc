@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/image_compare.h"
+#include "core/likely_values.h"
+#include "core/near_pixels.h"
 #include "core/probes.h"
 #include "core/workers.h"
 #include "kernels/kernels.h"
@@ -20,11 +22,6 @@ constexpr double kLikelyValueError = 0.05 * 0.05, kDoubt = 0.1;
 // Of a picture's squared error to what its samples' variances say. More is chance: one bright path among few probes. Scrambled nets
 // are, where they do not help, as good as independent samples (Owen, Annals of Statistics 25, 1997).
 constexpr double kMostFactor = 1;
-
-template <class T>
-double luminance_of(const std::array<T, 3>& rgb) {
-  return luminance(rgb[0], rgb[1], rgb[2]);
-}
 
 // The mean over channels of square / (truth + 0.01)^2.
 double relative(const std::array<double, 3>& square, const std::array<double, 3>& truth) {
@@ -73,28 +70,6 @@ std::array<Sums, kKinds> sum_squares(const MeanPicture& picture, uint32_t thread
   return all;
 }
 
-// f(pixel, together) for (x, y) and the up to eight pixels around it, and whether they are in its square.
-template <class F>
-void for_each_near(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
-  // Where its square begins, in the whole picture.
-  const uint32_t column = picture.square_column(x) * picture.side, row = picture.square_row(y) * picture.side;
-  for (uint32_t j = y - std::min(y, 1u); j < std::min(y + 2, picture.height); ++j) {
-    const bool same_row = j + picture.row - row < picture.side;
-    for (uint32_t i = x - std::min(x, 1u); i < std::min(x + 2, picture.width); ++i) {
-      const bool together = same_row && i + picture.column - column < picture.side;
-      f(picture.pixels[size_t{j} * picture.width + i], together);
-    }
-  }
-}
-
-// f(pixel) for those that are independent of it.
-template <class F>
-void for_each_neighbour(const MeanPicture& picture, uint32_t x, uint32_t y, const F& f) {
-  for_each_near(picture, x, y, [&](const PixelMean& pixel, bool together) {
-    if (!together) f(pixel);
-  });
-}
-
 // Is all the pixel's variance one bright path's, such as few neighbours have met? One sample F among n dark ones has the variance
 // (F / n)^2 of their mean, and lifts it by F / n. (That is what it is off by, too, whatever the other samples are like.)
 bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
@@ -106,14 +81,14 @@ bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelM
   });
   if (calmer <= neighbours / 2) return false;  // the median is not among them
   double around = 0;
-  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) { around += luminance_of(pixel.rgb); });
-  const double lift = luminance_of(centre.rgb) - around / neighbours, lift2 = lift * lift;
+  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) { around += luminance(pixel.rgb); });
+  const double lift = luminance(centre.rgb) - around / neighbours, lift2 = lift * lift;
   return lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
 }
 
 // How far a likely value is from what was seen: the square of the logarithm of their ratio.
 double doubt(const std::array<double, 3>& likely, const PixelMean& seen) {
-  return std::pow(std::log((luminance_of(likely) + kLeastRadiance) / (luminance_of(seen.rgb) + kLeastRadiance)), 2);
+  return std::pow(std::log((luminance(likely) + kLeastRadiance) / (luminance(seen.rgb) + kLeastRadiance)), 2);
 }
 
 // variance: relative, of what the terms have been multiplied by. doubt: the mean over the terms.
@@ -126,57 +101,7 @@ ErrorEstimate with_interval(const MeanPicture& picture, const Sums& all, double 
   return {value, value / spread, value * spread};
 }
 
-// Towards what is likelier, by what noise of that variance explains of their difference.
-std::array<double, 3> shrink(const std::array<double, 3>& value, std::array<double, 3> towards, double variance) {
-  const double difference = luminance_of(value) - luminance_of(towards), square = difference * difference;
-  const double kept = variance < square ? 1 - variance / square : 0;
-  for (size_t c = 0; c < 3; ++c) towards[c] += kept * (value[c] - towards[c]);
-  return towards;
-}
-
 }  // namespace
-
-LikelyValues::LikelyValues(const MeanPicture& picture, uint32_t threads)
-    : picture_(picture),
-      columns_((picture.width + kBlock - 1) / kBlock),
-      rows_((picture.height + kBlock - 1) / kBlock),
-      around_(size_t{columns_} * rows_) {
-  std::vector<Group> blocks(around_.size());
-  for_each_row(threads, rows_, [&](uint32_t row) {
-    for (uint32_t y = row * kBlock; y < std::min((row + 1) * kBlock, picture.height); ++y) {
-      for (uint32_t x = 0; x < picture.width; ++x) {
-        blocks[size_t{row} * columns_ + x / kBlock].add(picture.pixels[size_t{y} * picture.width + x]);
-      }
-    }
-  });
-  for_each_row(threads, rows_, [&](uint32_t row) {
-    for (uint32_t column = 0; column < columns_; ++column) {
-      Group& around = around_[size_t{row} * columns_ + column];
-      for (uint32_t j = row - std::min(row, 1u); j < std::min(row + 2, rows_); ++j) {
-        for (uint32_t i = column - std::min(column, 1u); i < std::min(column + 2, columns_); ++i) {
-          around.add(blocks[size_t{j} * columns_ + i]);
-        }
-      }
-    }
-  });
-}
-
-size_t LikelyValues::bytes_per_pixel() { return 2 * sizeof(Group) / (kBlock * kBlock); }
-
-std::array<double, 3> LikelyValues::operator()(uint32_t x, uint32_t y, const PixelMean& centre) const {
-  Group own, near, square;
-  own.add(centre);
-  for_each_near(picture_, x, y, [&](const PixelMean& pixel, bool together) { (together ? square : near).add(pixel); });
-  if (near.pixels == 0) return own.sum;
-  Group far = around_[size_t{y / kBlock} * columns_ + x / kBlock];
-  far.take(near), far.take(square);
-  // Pixels that have met no bright path yet may not pass for calm beside noisy ones.
-  std::array<double, 3> towards = near.mean();
-  if (far.pixels > 0) {
-    towards = shrink(towards, far.mean(), std::max(near.mean_variance(), far.mean_variance() / 2) / near.pixels);
-  }
-  return shrink(own.sum, towards, std::max(own.variance, near.mean_variance() / 2));
-}
 
 ErrorEstimate estimate_error(const MeanPicture& picture, const SquaredError& squares, uint32_t threads) {
   const LikelyValues likely_value(picture, threads);

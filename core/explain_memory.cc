@@ -2,9 +2,9 @@
 #include <array>
 #include <string>
 
-#include "core/error_estimate.h"
 #include "core/explain_topics.h"
 #include "core/film.h"
+#include "core/likely_values.h"
 #include "core/path_buffer.h"
 #include "core/path_reuse.h"
 #include "core/plan_light_paths.h"

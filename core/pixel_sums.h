@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -18,6 +19,10 @@ namespace lanewise {
 
 // Rec. 709 luminance of linear RGB.
 constexpr double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
+template <class T>
+constexpr double luminance(const std::array<T, 3>& rgb) {
+  return luminance(rgb[0], rgb[1], rgb[2]);
+}
 
 using Uint128 = unsigned __int128;
 

@@ -6,18 +6,16 @@
 #include <random>
 
 #include "core/image_compare.h"
+#include "core/likely_values.h"
 #include "core/noise_film.h"
 #include "core/probes.h"
 #include "core/render.h"
 #include "core/verify/test_scene.h"
+#include "tests/flat_means.h"
 #include "tests/made_up_draw.h"
 
 namespace lanewise {
 namespace {
-
-MeanPicture flat(uint32_t width, uint32_t height, float value, float variance) {
-  return {width, height, std::vector<PixelMean>(size_t{width} * height, {{value, value, value}, variance})};
-}
 
 // MRSE of the exposure against the draw's expectation.
 double measured(const Exposure& exposure, const test::MadeUpDraw& draw) {
@@ -38,40 +36,8 @@ Settings picture(uint32_t spp) {
 
 }  // namespace
 
-TEST_CASE("error estimate: a pixel's likely value is its own where it is calm, its neighbours' where it is noisy") {
-  MeanPicture scene = flat(5, 5, 1, 1e-6f);
-  scene.pixels[12] = {{3, 3, 3}, 1e-6f};
-  CHECK(LikelyValues(scene, 1)(2, 2, scene.pixels[12])[0] == doctest::Approx(3).epsilon(1e-4));  // an edge
-  scene.pixels[12].variance = 4;                                                                 // a firefly
-  CHECK(LikelyValues(scene, 1)(2, 2, scene.pixels[12])[1] == doctest::Approx(1));
-  scene.pixels[12].variance = 1;
-  CHECK(LikelyValues(scene, 1)(2, 2, scene.pixels[12])[2] == doctest::Approx(1 + 2 * 0.75));
-  CHECK(LikelyValues(scene, 1)(0, 0, {{5, 5, 5}, 1e-6f})[0] == doctest::Approx(5).epsilon(1e-4));
-  const MeanPicture one = flat(1, 1, 7, 100);
-  CHECK(LikelyValues(one, 1)(0, 0, one.pixels[0])[0] == 7);
-}
-
-TEST_CASE("error estimate: neighbours that have all missed the bright paths around are likely no darker than those") {
-  MeanPicture scene = flat(12, 12, 0, 0);
-  for (uint32_t y = 0; y < 12; y += 3) {
-    for (uint32_t x = 0; x < 12; x += 4) scene.pixels[y * 12 + x] = {{12, 12, 12}, 144};
-  }
-  const PixelMean met = scene.pixels[6 * 12 + 4];
-  const double around = 11 * 12 / 135.0,
-               noise = 11 * 144 / 135.0 / 2 / 8;  // without the nine here; of the mean of eight
-  CHECK(LikelyValues(scene, 2)(4, 6, met)[0] == doctest::Approx(noise / around).epsilon(1e-6).scale(0));
-  for (PixelMean& pixel : scene.pixels) pixel.variance = 0;  // no noise: there they are bright, here they are not
-  CHECK(LikelyValues(scene, 2)(4, 6, met)[0] == 0);
-}
-
-TEST_CASE("error estimate: a calm pixel beside noisy ones is no better known than they") {
-  MeanPicture scene = flat(3, 3, 1, 8);
-  scene.pixels[4] = {{0, 0, 0}, 0};  // has met no bright path yet
-  CHECK(LikelyValues(scene, 1)(1, 1, scene.pixels[4])[0] == doctest::Approx(1));
-}
-
 TEST_CASE("error estimate: pixels of one square are no neighbours, and hang together") {
-  MeanPicture scene = flat(4, 4, 1, 1e-2f);
+  MeanPicture scene = test::flat_means(4, 4, 1, 1e-2f);
   scene.side = 2, scene.column = 1, scene.row = 1;                       // squares from (1, 1) on
   for (const size_t i : {5, 6, 9, 10}) scene.pixels[i].rgb = {9, 9, 9};  // one of them, which chance has made bright
   for (PixelMean& pixel : scene.pixels) pixel.variance = 64;
@@ -80,7 +46,7 @@ TEST_CASE("error estimate: pixels of one square are no neighbours, and hang toge
   CHECK(LikelyValues(scene, 1)(1, 1, scene.pixels[5])[0] > 1.2);
 
   // An interval of a quarter of the terms is twice as wide; the value is the same. All squares are alike in themselves.
-  MeanPicture calm = flat(64, 64, 0.49f, 0);
+  MeanPicture calm = test::flat_means(64, 64, 0.49f, 0);
   const auto square = [](size_t i) {
     const double value = (i % 64 / 2 * 7 + i / 128 * 3) % 11 == 0 ? 1 : 1e-9;
     return std::array<double, 3>{value, value, value};
@@ -112,7 +78,7 @@ TEST_CASE("error estimate: the narrowest window has probes, in whole squares of 
 }
 
 TEST_CASE("error estimate: exact squares give their relative mean, and a calm picture no error") {
-  const MeanPicture scene = flat(20, 10, 0.49f, 0);
+  const MeanPicture scene = test::flat_means(20, 10, 0.49f, 0);
   const auto square = [](size_t) { return std::array<double, 3>{0.01, 0.02, 0.03}; };
   const ErrorEstimate error = estimate_error(scene, square, 3);
   CHECK(error.mrse == doctest::Approx(0.02 / 0.25).epsilon(1e-5).scale(0));
