@@ -20,12 +20,12 @@ import lanewise
 import picture_error
 import study
 
-SIZE = ['-r', 320, 240]
+SIZE = 320, 240
 
 
 def predictions(scene, arguments):
     def render(*flags):
-        return lanewise.render(scene, *study.view_flags(scene), *SIZE, *flags, estimate=True)
+        return study.render_whole(scene, SIZE, *flags, estimate=True)
     truth, stats = render('-s', arguments.reference, '--seed', 10**6)
     if not truth.any():
         return []  # no light, no error

@@ -2,6 +2,7 @@
 each of them leaves in perf/results/<part>.json. A speed holds only beside others of the same run: so every round runs all
 variants once, in turn, and ratios are taken within rounds."""
 import argparse
+import functools
 import json
 import pathlib
 import statistics
@@ -15,6 +16,9 @@ matplotlib.rcParams.update({'svg.hashsalt': 'lanewise', 'axes.spines.top': False
 import matplotlib.pyplot as plt  # noqa: E402
 
 import lanewise  # noqa: E402
+
+sys.path.append(str(pathlib.Path(__file__).with_name('peers')))
+import collada  # noqa: E402
 
 PARTS = ['frames', 'traversal', 'kernels', 'wave_sweep', 'thread_scaling', 'size_study']  # in the page's order
 COURSE = ['CBspheres', 'CBbunny_microfacet_cu', 'CBdragon_microfacet_au']
@@ -51,6 +55,17 @@ def all_scenes_of(given):
 def view_flags(scene):
     """Those scenes that we ship have cameras of their own."""
     return ['--view', 'file' if scene in lanewise.SHIPPED else 'fit', '--normals', 'flat']
+
+
+@functools.cache
+def _camera(scene, size):
+    return None if scene in lanewise.SHIPPED else collada.Scene(scene).camera('fit').framed(*size)
+
+
+def render_whole(scene, size, *flags, estimate=False):
+    """lanewise.render of size = (width, height) pixels; it shows what --view fit shows at 480 x 360, where that itself shows
+    less the smaller the picture."""
+    return lanewise.render(scene, '--normals', 'flat', '-r', *size, *flags, camera=_camera(scene, size), estimate=estimate)
 
 
 def in_turn(measures, rounds):
