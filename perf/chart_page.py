@@ -9,6 +9,7 @@ from page import chart, document, picture, table
 STYLE = """.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 16px 24px; }
 .charts > * { max-width: 620px; min-width: 0; } td b { white-space: nowrap; }
 .charts svg, .reference img { width: 100%; height: auto; display: block; }
+.charts > div { overflow-x: auto; } .charts th, .charts td { padding-right: 8px; }
 .reference { max-width: 480px; margin-top: 1.5em; }
 .crops { display: grid; grid-template-columns: repeat(auto-fill, minmax(150px, 1fr)); gap: 12px; }
 .crops img { width: 100%; display: block; margin-bottom: 3px; image-rendering: pixelated; box-sizing: border-box; }
