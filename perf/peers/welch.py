@@ -2,7 +2,7 @@
 
 Each renderer gives K pictures of n samples a pixel under K seeds. A pixel's value is heavy-tailed (caustics), and no
 test of few numbers has an exact tail at the 1e-6 that Sidak's correction over 10^4 pixels asks for. What makes Welch's
-t-test safe here is symmetry: both sides have the same K, n and transport, so that the difference is nearly symmetric
+t-test safe here is symmetry: both sides have the same K, n, transport and estimator, so that the difference is nearly symmetric
 however skewed each side is, and on symmetric heavy tails the t-test errs on the side of accepting. (Mitsuba's strata
 break the symmetry where they help, which is where tails are short.) It then says little about small errors in single
 pixels; hence four tests, each of which must pass:
@@ -60,7 +60,8 @@ def sidak(tests):
 
 
 def compare(a, b, a_more=None, pictures=1):
-    """a, b: (K, height, width, 3), with the same samples a pixel. a_more: a with more samples, for blocks and means.
+    """a, b: (K, height, width, 3), with the same samples a pixel. a_more: a with more samples or another estimator, for blocks
+    and means.
     pictures: how many of them the table has."""
     a, b = a.astype(float), b.astype(float)
     a_more = a if a_more is None else a_more.astype(float)
@@ -82,8 +83,9 @@ def compare(a, b, a_more=None, pictures=1):
 
 
 def _square_error(x):
-    """Variance of the picture's mean. Pixels are independent, and thousands of them tell it better than K means."""
-    return x.var(0, ddof=1).sum((0, 1)) / len(x) / (x.shape[1] * x.shape[2]) ** 2
+    """Variance of the picture's mean. Blocks are independent, or nearly, and many of them tell it better than K means."""
+    blocks = np.stack([_blocks(x[..., channel]) for channel in range(x.shape[-1])], -1)
+    return blocks.var(0, ddof=1).mean((0, 1)) / len(x) / (blocks.shape[1] * blocks.shape[2])
 
 
 def _blocks(x):
