@@ -61,7 +61,7 @@ def draw(scene, kind, curves, command, own_error=None, versus=None):
         legend = axis.legend(loc='lower left', bbox_to_anchor=(-0.02, 1), ncol=2, frameon=False, fontsize=8.5)
         figure.text(0.99, 0.008, textwrap.shorten(command, 110, placeholder=' ...'), ha='right', fontsize=5, color=GREY)
         rows = math.ceil(len(legend.get_texts()) / 2)
-        figure.subplots_adjust(left=0.13, right=0.98, bottom=0.14, top=0.93 - 0.045 * rows)
+        figure.subplots_adjust(left=0.13, right=0.96, bottom=0.14, top=0.93 - 0.045 * rows)
         return svg_text(figure)
 
 
