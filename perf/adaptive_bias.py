@@ -21,7 +21,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import lanewise
-import study
 from lanewise import RESULTS
 
 TARGETS = [0.4, 0.2, 0.1, 0.05]  # standard error of a pixel, relative; -a takes 1.96 times that as its tolerance
@@ -34,7 +33,7 @@ RULES = {
 
 def render(scene, flags, seed):
     """Mean luminance of the picture, and samples per pixel."""
-    picture, stats = study.render_whole(scene, (96, 72), '--seed', seed, *flags)
+    picture, stats = lanewise.render(scene, '--view', 'fit', '-r', '96', '72', '--seed', str(seed), *flags)
     y = picture.astype(float) @ [0.2126, 0.7152, 0.0722]
     return y.mean(), stats['samples'] / y.size
 
