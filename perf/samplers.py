@@ -57,6 +57,11 @@ def ratios(found):
     return [(float(s / r), float(np.hypot(s_error / s, r_error / r) * s / r)) for s, s_error, r, r_error in zip(*columns)]
 
 
+def worst(found):
+    """The largest of the ratios, less two standard errors of each."""
+    return max(ratio - 2 * error for ratio, error in found['ratio'])
+
+
 def share_of_samples(found):
     """Of those that independent samples took for their least error, how many Sobol needs for it; along straight lines
     between the points, on log axes."""
@@ -125,8 +130,6 @@ def main():
                    indent=1) + '\n')
     (lanewise.RESULTS / 'samplers.md').write_text(page(found, command))
     draw(found, command)
-    def worst(f):
-        return max(ratio - 2 * error for ratio, error in f['ratio'])
     short = [f for f in found if worst(f) > 1.05 or (f['part'] == 'direct light' and f['share'] > 0.5)]
     for f in short:
         print(f'{f["scene"]}, {f["part"]}: {f["share"]:.2f} of the samples, at least {worst(f):.2f} of the error somewhere')
