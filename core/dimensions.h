@@ -18,7 +18,9 @@ enum RandomPurpose : uint32_t {
   // The way to the vertex (place in the pixel, or direction from the one before); its first light sample, and what
   // CameraDraw names. Of a light path at bounce 0: its point of the lamp, and its direction.
   kSetPath = 0,
-  kSetChoice = 1,  // lobe, roulette, patch of the first light sample; of a light path at bounce 0: patch and caster
+  // Lobe (at smooth glass: of light paths), roulette, patch of the first light sample. Of a light path at bounce 0: patch
+  // and caster.
+  kSetChoice = 1,
   kSetLens = 2,    // point on the lens (of camera paths at bounce 0; where a light path is seen, at any)
   kSetLight = 3,   // a light sample
   kSetsPerBounce = 1u << 16,  // so at most 65,533 samples of lights and connections a vertex, and 65,535 bounces
