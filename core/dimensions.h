@@ -21,8 +21,8 @@ enum RandomPurpose : uint32_t {
   // Lobe (at smooth glass: of light paths), roulette, patch of the first light sample. Of a light path at bounce 0: patch
   // and caster.
   kSetChoice = 1,
-  kSetLens = 2,    // point on the lens (of camera paths at bounce 0; where a light path is seen, at any)
-  kSetLight = 3,   // a light sample
+  kSetLens = 2,               // point on the lens (of camera paths at bounce 0; where a light path is seen, at any)
+  kSetLight = 3,              // a light sample
   kSetsPerBounce = 1u << 16,  // so at most 65,533 samples of lights and connections a vertex, and 65,535 bounces
 };
 
