@@ -71,19 +71,21 @@ std::array<Sums, kKinds> sum_squares(const MeanPicture& picture, uint32_t thread
 }
 
 // Is all the pixel's variance one bright path's, such as few neighbours have met? One sample F among n dark ones has the variance
-// (F / n)^2 of their mean, and lifts it by F / n. (That is what it is off by, too, whatever the other samples are like.)
+// (F / n)^2 of their mean, and lifts it by F / n. (That is what it is off by, too, whatever the other samples are like.) Pixels at
+// the edge of something bright look the same, but for what is beside them.
 bool is_firefly(const MeanPicture& picture, uint32_t x, uint32_t y, const PixelMean& centre) {
   constexpr float kOutlier = 16, kAlike = 4;
   int neighbours = 0, calmer = 0;
+  double around = 0, brightest = 0;
   for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) {
-    neighbours += 1;
+    const double value = luminance(pixel.rgb);
+    neighbours += 1, around += value, brightest = std::max(brightest, value);
     calmer += kOutlier * pixel.variance < centre.variance;
   });
-  if (calmer <= neighbours / 2) return false;  // the median is not among them
-  double around = 0;
-  for_each_neighbour(picture, x, y, [&](const PixelMean& pixel) { around += luminance(pixel.rgb); });
-  const double lift = luminance(centre.rgb) - around / neighbours, lift2 = lift * lift;
-  return lift > 0 && lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
+  const double value = luminance(centre.rgb);
+  if (calmer <= neighbours / 2 || value <= brightest) return false;  // the median is not among the calmer
+  const double lift = value - around / neighbours, lift2 = lift * lift;
+  return lift2 < kAlike * centre.variance && kAlike * lift2 > centre.variance;
 }
 
 // How far a likely value is from what was seen: the square of the logarithm of their ratio.

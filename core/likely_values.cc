@@ -7,6 +7,10 @@
 namespace lanewise {
 namespace {
 
+// Of a pixel's own variance. A bright path raises a pixel's mean and, by the same samples, its variance: their difference from what
+// is around says less than one from variances known beforehand would. Measured, as kDoubt in core/error_estimate.cc.
+constexpr double kOwnDoubt = 2;
+
 // Towards what is likelier, by what noise of that variance explains of their difference.
 std::array<double, 3> shrink(const std::array<double, 3>& value, std::array<double, 3> towards, double variance) {
   const double difference = luminance(value) - luminance(towards), square = difference * difference;
@@ -56,7 +60,7 @@ std::array<double, 3> LikelyValues::operator()(uint32_t x, uint32_t y, const Pix
   if (far.pixels > 0) {
     towards = shrink(towards, far.mean(), std::max(near.mean_variance(), far.mean_variance() / 2) / near.pixels);
   }
-  return shrink(own.sum, towards, std::max(own.variance, near.mean_variance() / 2));
+  return shrink(own.sum, towards, kOwnDoubt * std::max(own.variance, near.mean_variance() / 2));
 }
 
 }  // namespace lanewise

@@ -114,6 +114,30 @@ TEST_CASE("error estimate: a firefly's error is known from its pixel alone, what
   CHECK(got.error->mrse == doctest::Approx(truth).epsilon(0.1).scale(0));
 }
 
+TEST_CASE("error estimate: pixels at the edge of something bright are no fireflies") {
+  // Bright up to within column 32; less, with noise, from there on. Sequences do well on both.
+  const auto truth = [](uint32_t x) { return x < 32 ? 2 : x == 32 ? 0.6 * 2 + 0.4 * 0.5 : 0.5; };
+  const auto draw = [&](const std::vector<uint32_t>& pixels, uint64_t first, uint32_t count, PixelSums* sums,
+                        uint32_t) {
+    for (const uint32_t pixel : pixels) {
+      const uint32_t x = pixel % 96;
+      for (uint64_t i = first; i < first + count; ++i) {
+        const double shift = test::MadeUpDraw::uniform((uint64_t{pixel} << 32) + (i >> 16) + 1);
+        const double u = std::fmod(shift + 0.6180339887498949 * static_cast<double>(i & 0xffff), 1.0);
+        const double y = x < 32 || (x == 32 && u < 0.6) ? 2 : 0.5 * (x == 32 ? 1 : 0.5 + u);
+        sums[pixel].add(y, y, y);
+      }
+    }
+    return pixels.size() * count;
+  };
+  const Exposure got = expose(picture(64), 2, draw);
+  REQUIRE(got.error);
+  Image exact = got.image;
+  for (size_t i = 0; i < exact.rgb.size(); ++i)
+    exact.rgb[i] = static_cast<float>(truth(static_cast<uint32_t>(i / 3 % 96)));
+  CHECK(got.error->mrse == doctest::Approx(compare_images(got.image, exact).mrse).epsilon(0.2).scale(0));
+}
+
 TEST_CASE("error estimate: nothing is said of one sample, of -a, or where it is not asked for") {
   const test::MadeUpDraw draw;
   CHECK(!expose(picture(1), 1, draw).error);

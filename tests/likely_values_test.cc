@@ -13,7 +13,7 @@ TEST_CASE("likely values: a pixel's is its own where it is calm, its neighbours'
   scene.pixels[12].variance = 4;                                                                 // a firefly
   CHECK(LikelyValues(scene, 1)(2, 2, scene.pixels[12])[1] == doctest::Approx(1));
   scene.pixels[12].variance = 1;
-  CHECK(LikelyValues(scene, 1)(2, 2, scene.pixels[12])[2] == doctest::Approx(1 + 2 * 0.75));
+  CHECK(LikelyValues(scene, 1)(2, 2, scene.pixels[12])[2] == doctest::Approx(1 + 2 * 0.5));
   CHECK(LikelyValues(scene, 1)(0, 0, {{5, 5, 5}, 1e-6f})[0] == doctest::Approx(5).epsilon(1e-4));
   const MeanPicture one = test::flat_means(1, 1, 7, 100);
   CHECK(LikelyValues(one, 1)(0, 0, one.pixels[0])[0] == 7);
