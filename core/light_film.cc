@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <bitset>
 #include <utility>
 
 #include "core/packed_sums.h"
@@ -13,7 +14,7 @@ namespace lanewise {
 
 LightFilm::LightFilm(size_t pixels) : film_(pixels), band_bits_(static_cast<int>(std::bit_width(pixels / kBands))) {}
 
-// In the order of the bands, so that each lock is taken once at most.
+// Band by band, so that each lock is taken once at most.
 void LightFilm::add(std::vector<Splat>& splats) {
   std::array<size_t, kBands + 1> begin{};
   for (const Splat& splat : splats) ++begin[band_of(splat.pixel) + 1];
@@ -26,14 +27,28 @@ void LightFilm::add(std::vector<Splat>& splats) {
       ++next[home];
     }
   }
-  for (size_t k = 0; k < kBands; ++k) {
-    if (begin[k] == begin[k + 1]) continue;
-    const std::lock_guard lock(locks_[k]);
+  const auto add_band = [&](size_t k) {
     for (size_t i = begin[k]; i < begin[k + 1]; ++i) {
       constexpr size_t kAhead = 8;  // pixels lie in two cache lines each
       const PixelSums& soon = film_.sums[splats[std::min(i + kAhead, splats.size() - 1)].pixel];
       hwy::Prefetch(&soon.r), hwy::Prefetch(&soon.y2);
       film_.sums[splats[i].pixel].add(splats[i].r, splats[i].g, splats[i].b);
+    }
+  };
+  // From another band on than the last thread that came, and those at the end that somebody else is at: so threads do not wait for
+  // each other, at the locks or for the same new page.
+  const size_t first = came_++ * kStride;
+  std::bitset<kBands> left;
+  for (size_t k = 0; k < kBands; ++k) left[k] = begin[k] < begin[k + 1];
+  for (const bool wait : {false, true}) {
+    for (size_t j = 0; j < kBands; ++j) {
+      const size_t k = (first + j) % kBands;
+      if (!left[k]) continue;
+      std::unique_lock lock(locks_[k], std::defer_lock);
+      if (wait) lock.lock();
+      if (!wait && !lock.try_lock()) continue;
+      add_band(k);
+      left[k] = false;
     }
   }
 }

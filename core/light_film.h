@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -32,12 +33,14 @@ class LightFilm {
   Film& film() { return film_; }
 
  private:
-  static constexpr size_t kBands = 64;  // of pixels, with a lock each, at most
+  static constexpr size_t kBands = 64;   // of pixels, with a lock each, at most
+  static constexpr size_t kStride = 39;  // 64 / golden ratio: those who come begin far from each other
   size_t band_of(uint32_t pixel) const { return pixel >> band_bits_; }
 
   Film film_;
   int band_bits_;
   std::array<std::mutex, kBands> locks_;
+  std::atomic<size_t> came_{0};
 };
 
 // Each pixel that they fall on, in rising order, with its sums packed: for another process. Sorts the list.

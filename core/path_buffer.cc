@@ -42,7 +42,9 @@ PathBuffer::PathBuffer(uint32_t capacity) : capacity_(round_up_to_lanes(capacity
   }
   state_.capacity = capacity_;
   const Path<float> dummy = dummy_path(capacity_);
-  for (uint32_t i = 0; i < padded_; ++i) store_path(state_, i, dummy);
+#define LANEWISE_FILL(type, name, meaning) std::fill_n(state_.name, padded_, static_cast<type>(dummy.name));
+  LANEWISE_PATH_FIELDS(LANEWISE_FILL, LANEWISE_FILL)
+#undef LANEWISE_FILL
 }
 
 size_t KeptBuffer::bytes(uint32_t capacity) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "core/dimensions.h"
@@ -36,7 +37,7 @@ class Rounds {
         shares_(shares()),
         probes_(settings, shares_, settings.estimate_error, side) {
     if (light_) light_film_.emplace(film_.sums.size());
-    for_each_pixel([&](uint32_t i) { paths_per_sample_ += shares_.mean_count(i); });
+    if (timed()) for_each_pixel([&](uint32_t i) { paths_per_sample_ += shares_.mean_count(i); });
     if (!control.resume) return;
     control.resume->get_picture(settings, shares_, film_);
     if (light_) resume_light(*control.resume);
@@ -48,7 +49,7 @@ class Rounds {
     draw_probes();
     while (const uint32_t count = next_round()) {
       const double begin = intervals_.elapsed();
-      const uint64_t paths = paths_behind(done_ + count);
+      const uint64_t paths = timed() ? paths_behind(done_ + count) : 0;
       const bool whole = draw_light(done_ + count) && draw_tiles(done_ + count);
       if (whole) done_ += count;
       if (!whole || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
@@ -98,7 +99,8 @@ class Rounds {
     if (!timed()) all.crop = {};
     if (!draw_first(all)) return same;
     if (settings_.first_sample == 0) for_each_pixel([&](uint32_t i) { film_.samples[i] = 1; });
-    return {settings_.first_sample, settings_.width, settings_.height, all.window(), film_.sums.data()};
+    return {settings_.first_sample, settings_.width,   settings_.height,
+            all.window(),           film_.sums.data(), thread_count(settings_)};
   }
 
   // Sample 0 of every pixel. False if the render was stopped before that.
@@ -184,24 +186,36 @@ class Rounds {
   // Tiles, or groups of one share near each other, of the pixels that have less than their shares of that, all of a tile with as many
   // samples and as many to come. They are of a wave or little less, if that leaves work for all workers.
   std::vector<Tile> tiles_behind(uint64_t samples) const {
-    constexpr uint64_t kPerWorker = 16;
-    const uint64_t enough = std::min<uint64_t>(settings_.wave, paths_behind(samples) / (kPerWorker * workers_));
-    std::vector<Tile> behind;
-    std::map<std::array<uint64_t, 3>, Tile> parts;  // by the number of their first sample, samples drawn, and to come
-    for (const Tile& tile : make_tiles(settings_, static_cast<uint32_t>(samples - done_), !shares_.even())) {
+    const std::vector<Tile> tiles = make_tiles(settings_, static_cast<uint32_t>(samples - done_), !shares_.even());
+    struct Run {  // of pixels of a tile that have one share, and as many samples
+      std::span<const uint32_t> pixels;
+      uint64_t first, drawn, more;  // the number of their first sample, samples drawn, and to come
+    };
+    std::vector<Run> runs;
+    uint64_t paths = 0;  // to come
+    for (const Tile& tile : tiles) {
       for (auto begin = tile.pixels.begin(); begin != tile.pixels.end();) {
-        const uint32_t first = *begin;
+        const size_t group = shares_.group(*begin);
+        const uint64_t drawn = film_.samples[*begin];
         const auto end = std::find_if(begin, tile.pixels.end(), [&](uint32_t pixel) {
-          return shares_.group(pixel) != shares_.group(first) || film_.samples[pixel] != film_.samples[first];
+          return film_.samples[pixel] != drawn || shares_.group(pixel) != group;
         });
-        if (const uint64_t more = paths_behind(first, samples)) {
-          std::vector<uint32_t>& part = parts[{shares_.first(first), film_.samples[first], more}].pixels;
-          const auto together = part.size() + static_cast<size_t>(end - begin);
-          if (!part.empty() && together * more > enough) behind.push_back({std::exchange(part, {})});
-          part.insert(part.end(), begin, end);
+        if (const uint64_t due = shares_.count(*begin, samples); due > drawn) {
+          const uint64_t more = due - drawn;
+          runs.push_back({{begin, end}, shares_.first(*begin), drawn, more});
+          paths += runs.back().pixels.size() * more;
         }
         begin = end;
       }
+    }
+    constexpr uint64_t kPerWorker = 16;
+    const uint64_t enough = std::min<uint64_t>(settings_.wave, paths / (kPerWorker * workers_));
+    std::vector<Tile> behind;
+    std::map<std::array<uint64_t, 3>, Tile> parts;  // by first, drawn, and more
+    for (const auto& [pixels, first, drawn, more] : runs) {
+      std::vector<uint32_t>& part = parts[{first, drawn, more}].pixels;
+      if (!part.empty() && (part.size() + pixels.size()) * more > enough) behind.push_back({std::exchange(part, {})});
+      part.insert(part.end(), pixels.begin(), pixels.end());
     }
     for (auto& [counts, part] : parts) behind.push_back(std::move(part));
     return behind;

@@ -9,6 +9,7 @@
 #include "core/image_compare.h"
 #include "core/path_reuse.h"
 #include "core/saved_render.h"
+#include "core/workers.h"
 
 namespace lanewise {
 namespace {
@@ -32,8 +33,21 @@ struct Block {
   std::array<double, 3> sum{}, squares{};  // over them, by channel
 };
 
+template <class T>
+using ByColour = std::array<T, SampleShares::kColours>;
+
 struct Grid {
   uint32_t columns, rows;
+
+  size_t size() const { return size_t{columns} * rows; }
+  // f(colour, block) for all. Rows are shared out to threads.
+  template <class F>
+  void for_each_block(uint32_t threads, const F& f) const {
+    for_each_row(threads, SampleShares::kColours * rows, [&](uint32_t i) {
+      const size_t begin = size_t{i / SampleShares::kColours} * columns;
+      for (size_t b = begin; b < begin + columns; ++b) f(i % SampleShares::kColours, b);
+    });
+  }
 
   // f(other) for the blocks around one, itself among them.
   template <class F>
@@ -47,24 +61,26 @@ struct Grid {
   }
 };
 
-// Of the samples in each block, and around it: the relative variance within blocks.
-std::vector<double> relative_deviations(const Grid& grid, const std::vector<Block>& blocks) {
-  std::vector<double> variances(blocks.size());  // times pixels
-  for (size_t b = 0; b < blocks.size(); ++b) {
-    if (blocks[b].pixels == 0) continue;
+// Of the samples in each block, and around it: the relative variance within blocks. For every colour.
+ByColour<std::vector<double>> relative_deviations(const Grid& grid, const ByColour<std::vector<Block>>& blocks,
+                                                  uint32_t threads) {
+  ByColour<std::vector<double>> variances, deviations;  // variances: times pixels
+  variances.fill(std::vector<double>(grid.size())), deviations.fill(std::vector<double>(grid.size()));
+  grid.for_each_block(threads, [&](size_t colour, size_t b) {
+    const Block& block = blocks[colour][b];
+    if (block.pixels == 0) return;
     for (size_t c = 0; c < 3; ++c) {
       double pixels = 0, sum = 0;
-      grid.for_each_around(b, [&](size_t other) { pixels += blocks[other].pixels, sum += blocks[other].sum[c]; });
-      const double level = sum / pixels + kLeastRadiance, own = blocks[b].sum[c];
-      variances[b] += std::max(0.0, blocks[b].squares[c] - own * own / blocks[b].pixels) / (level * level);
+      grid.for_each_around(b, [&](size_t i) { pixels += blocks[colour][i].pixels, sum += blocks[colour][i].sum[c]; });
+      const double level = sum / pixels + kLeastRadiance, own = block.sum[c];
+      variances[colour][b] += std::max(0.0, block.squares[c] - own * own / block.pixels) / (level * level);
     }
-  }
-  std::vector<double> deviations(blocks.size());
-  for (size_t b = 0; b < blocks.size(); ++b) {
+  });
+  grid.for_each_block(threads, [&](size_t colour, size_t b) {
     double pixels = 0, sum = 0;
-    grid.for_each_around(b, [&](size_t other) { pixels += blocks[other].pixels, sum += variances[other]; });
-    if (pixels > 0) deviations[b] = std::sqrt(sum / pixels);
-  }
+    grid.for_each_around(b, [&](size_t i) { pixels += blocks[colour][i].pixels, sum += variances[colour][i]; });
+    if (pixels > 0) deviations[colour][b] = std::sqrt(sum / pixels);
+  });
   return deviations;
 }
 
@@ -117,27 +133,30 @@ std::vector<uint8_t> deal(std::vector<double> sigma, const std::vector<Block>& b
 }  // namespace
 
 SampleShares::SampleShares(uint64_t first_sample, uint32_t width, uint32_t height, const Window& drawn,
-                           const PixelSums* sums)
+                           const PixelSums* sums, uint32_t threads)
     : SampleShares(first_sample, width) {
   const Grid grid{columns_, (height + kBlock - 1) / kBlock};
-  std::array<std::vector<Block>, kColours> blocks;
-  blocks.fill(std::vector<Block>(size_t{grid.columns} * grid.rows));
-  for (uint32_t y = drawn.y; y < drawn.y + drawn.height; ++y) {
-    for (uint32_t x = drawn.x; x < drawn.x + drawn.width; ++x) {
-      const uint32_t pixel = y * width + x;
-      const size_t group = group_of(pixel);
-      Block& block = blocks[group % kColours][group / kColours];
-      const double rgb[] = {sums[pixel].r.as<double>(), sums[pixel].g.as<double>(), sums[pixel].b.as<double>()};
-      block.pixels += 1;
-      for (size_t c = 0; c < 3; ++c) block.sum[c] += rgb[c], block.squares[c] += rgb[c] * rgb[c];
+  ByColour<std::vector<Block>> blocks;
+  blocks.fill(std::vector<Block>(grid.size()));
+  for_each_row(threads, grid.rows, [&](uint32_t row) {
+    const uint32_t begin = std::max(row * kBlock, drawn.y), end = std::min((row + 1) * kBlock, drawn.y + drawn.height);
+    for (uint32_t y = begin; y < end; ++y) {
+      for (uint32_t x = drawn.x; x < drawn.x + drawn.width; ++x) {
+        const PixelSums& pixel = sums[size_t{y} * width + x];
+        Block& block = blocks[colour(x, y)][size_t{row} * columns_ + x / kBlock];
+        const double rgb[] = {pixel.r.as<double>(), pixel.g.as<double>(), pixel.b.as<double>()};
+        block.pixels += 1;
+        for (size_t c = 0; c < 3; ++c) block.sum[c] += rgb[c], block.squares[c] += rgb[c] * rgb[c];
+      }
     }
-  }
-  eighths_.resize(kColours * blocks[0].size());
-  for (size_t colour = 0; colour < kColours; ++colour) {
-    const std::vector<Block>& others = blocks[kColours - 1 - colour];
-    const std::vector<uint8_t> steps = deal(relative_deviations(grid, others), others);
+  });
+  const ByColour<std::vector<double>> deviations = relative_deviations(grid, blocks, threads);
+  eighths_.resize(kColours * grid.size());
+  for_each_row(threads, kColours, [&](uint32_t colour) {
+    const uint32_t other = kColours - 1 - colour;
+    const std::vector<uint8_t> steps = deal(deviations[other], blocks[other]);
     for (size_t b = 0; b < steps.size(); ++b) eighths_[b * kColours + colour] = steps[b];
-  }
+  });
   if (std::ranges::all_of(eighths_, [](uint8_t share) { return share == kEven; })) eighths_.clear();
 }
 

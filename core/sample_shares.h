@@ -36,8 +36,10 @@ class SampleShares {
   // The same for every pixel. first_sample: number of the picture's first (--samples).
   explicit SampleShares(uint64_t first_sample) : first_sample_(first_sample) {}
 
-  // By the first sample of every pixel in `drawn`: sums[y * width + x]. Pixels that look calm everywhere have the same.
-  SampleShares(uint64_t first_sample, uint32_t width, uint32_t height, const Window& drawn, const PixelSums* sums);
+  // By the first sample of every pixel in `drawn`: sums[y * width + x]. Pixels that look calm everywhere have the same. The same for
+  // any number of threads.
+  SampleShares(uint64_t first_sample, uint32_t width, uint32_t height, const Window& drawn, const PixelSums* sums,
+               uint32_t threads);
 
   // As save() left them of a picture that wide. Nothing if it cannot have left this.
   static constexpr const char* kSaved = "shares";

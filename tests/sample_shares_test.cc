@@ -78,7 +78,7 @@ RenderResult render_with(const Settings& settings, const RenderControl& control 
 
 TEST_CASE("sample shares: in proportion to the noise, as many in all as there would be") {
   const std::vector<PixelSums> sums = first_samples();
-  const SampleShares shares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+  const SampleShares shares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2);
   REQUIRE(!shares.even());
   double left = 0, right = 0, all = 0;
   for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -99,12 +99,12 @@ TEST_CASE("sample shares: in proportion to the noise, as many in all as there wo
 
 TEST_CASE("sample shares: a pixel's sample has no say in its own share, nor in those of its colour") {
   std::vector<PixelSums> sums = first_samples();
-  const SampleShares before(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+  const SampleShares before(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2);
   const uint32_t changed[] = {0, 17 * kWidth + 20, 38 * kWidth + 49};
   for (const uint32_t pixel : changed) {
     sums = first_samples();
     sums[pixel].add(1000, 0, 5);
-    const SampleShares after(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+    const SampleShares after(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2);
     const auto colour = [](uint32_t i) { return SampleShares::colour(i % kWidth, i / kWidth); };
     size_t others = 0;
     for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -123,7 +123,7 @@ TEST_CASE("sample shares: as many in all where few pixels have met noise, too") 
     CAPTURE(noisy);
     std::vector<PixelSums> sums(200 * 160);
     for (uint32_t i = 0; i < noisy; ++i) sums[1234 + 1601 * i].add(9, 9, 9);
-    const SampleShares shares(0, 200, 160, {0, 0, 200, 160}, sums.data());
+    const SampleShares shares(0, 200, 160, {0, 0, 200, 160}, sums.data(), 2);
     double all = 0;
     for (uint32_t i = 0; i < sums.size(); ++i) all += shares.mean_count(i);
     CHECK(shares.share(1234 + 2) == SampleShares::kMost);
@@ -134,9 +134,9 @@ TEST_CASE("sample shares: as many in all where few pixels have met noise, too") 
 
 TEST_CASE("sample shares: a black picture and a calm one get the same for every pixel") {
   std::vector<PixelSums> sums(kWidth * kHeight);
-  CHECK(SampleShares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data()).even());
+  CHECK(SampleShares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2).even());
   for (PixelSums& s : sums) s.add(0.5, 0.25, 2);
-  CHECK(SampleShares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data()).even());
+  CHECK(SampleShares(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2).even());
   const SampleShares same(7);
   CHECK(same.even());
   CHECK(same.first(5) == 7);
@@ -146,11 +146,11 @@ TEST_CASE("sample shares: a black picture and a calm one get the same for every 
 
 TEST_CASE("sample shares: ranges of samples follow on each other, and nothing overflows") {
   const std::vector<PixelSums> sums = first_samples();
-  const SampleShares whole(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+  const SampleShares whole(0, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2);
   for (uint32_t pixel = 0; pixel < kWidth * kHeight; pixel += 7) {
     uint64_t before = 0;
     for (const uint64_t cut : {0u, 1u, 5u, 16u, 37u, 1000u}) {
-      const SampleShares rest(cut, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data());
+      const SampleShares rest(cut, kWidth, kHeight, {0, 0, kWidth, kHeight}, sums.data(), 2);
       REQUIRE(rest.first(pixel) == whole.count(pixel, cut));
       REQUIRE(whole.count(pixel, cut) + rest.count(pixel, 123) == whole.count(pixel, cut + 123));
       REQUIRE(whole.count(pixel, cut) >= before);
