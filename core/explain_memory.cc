@@ -5,10 +5,12 @@
 #include "core/explain_topics.h"
 #include "core/film.h"
 #include "core/likely_values.h"
-#include "core/path_buffer.h"
 #include "core/path_reuse.h"
 #include "core/plan_light_paths.h"
+#include "core/splats.h"
 #include "core/stats.h"
+#include "core/wave.h"
+#include "core/zeroed_pages.h"
 
 namespace lanewise {
 namespace {
@@ -72,12 +74,6 @@ size_t add_scene(const Plan& plan, std::vector<Decision>& out) {
   return memory.sum() / 2;
 }
 
-// Of a thread.
-size_t bytes_of_paths(const Plan& plan) {
-  const uint32_t wave = plan.settings.wave;
-  return 3 * PathBuffer::bytes(wave) + (reuses_paths(plan) ? KeptBuffer::bytes(wave) : 0);
-}
-
 }  // namespace
 
 MemoryNeed memory_need(const Plan& plan, bool saved) {
@@ -86,18 +82,21 @@ MemoryNeed memory_need(const Plan& plan, bool saved) {
   const Window window = settings.window();
   const size_t pixels = size_t{settings.width} * settings.height, shown = size_t{window.width} * window.height;
   // Those of --noise are in two halves, with an estimate of each.
-  const size_t sums = sizeof(PixelSums) + sizeof(uint64_t);
-  const size_t films = has_light_paths(plan) ? 2 * sums : sums;
-  const size_t drawn = settings.noise > 0 ? 2 * (sums + sizeof(std::array<double, 3>)) : films;
-  const size_t picture = 3 * sizeof(float) + sizeof(uint64_t);
+  const size_t films = settings.noise > 0 || has_light_paths(plan) ? 2 : 1;
+  const size_t estimate = settings.noise > 0 ? sizeof(std::array<double, 3>) : 0;
+  const size_t drawn = films * (sizeof(PixelSums) + sizeof(uint64_t) + estimate);
+  const size_t film =
+      films * (paged_bytes(sizeof(PixelSums) * pixels) + paged_bytes(sizeof(uint64_t) * pixels) + estimate * pixels) +
+      paged_bytes(3 * sizeof(float) * shown) + paged_bytes(sizeof(uint64_t) * shown);
+  const size_t splats = has_light_paths(plan) ? paged_bytes(2 * kMostSplats * sizeof(Splat)) : 0;
   constexpr size_t kEncoded = 6 * sizeof(float);  // of a pixel, in any format, with what it is made from
   // Means; with --noise also their squared errors, both in arrays that grow.
   const size_t pictures = has_light_paths(plan) ? 3 : 1;  // without, with and of the light paths alone
   const size_t mean = settings.noise > 0 ? 3 * (sizeof(PixelMean) + 3 * sizeof(float)) : pictures * sizeof(PixelMean);
   const size_t means = settings.estimate_error ? mean + LikelyValues::bytes_per_pixel() : 0;
   return {.scene = add_scene(plan, ignored),
-          .film = drawn * pixels + picture * shown,
-          .paths = thread_count(settings) * bytes_of_paths(plan),
+          .film = film,
+          .paths = thread_count(settings) * (paged_bytes(Wave::bytes(plan, settings.wave)) + splats),
           .files = std::max(means, kEncoded + (saved ? 4 * drawn : 0)) * shown};
 }
 
@@ -121,7 +120,8 @@ void explain_memory(const Plan& plan, std::vector<Decision>& out) {
   memory.add("paths", count_of(threads, "thread"),
              "three buffers of " + std::to_string(settings.wave) +
                  " paths: two that the sort moves between, one for those that met a light" +
-                 (reuses_paths(plan) ? "; and what is kept of two vertices" : ""),
+                 (reuses_paths(plan) ? "; and what is kept of two vertices" : "") +
+                 (light ? "; and what the camera sees of light paths" : ""),
              need.paths, "per_thread", threads);
   memory.add("files", "while they are written", "a checkpoint's takes four times the film beside it", need.files);
   memory.add("all", "scene, film, paths, files", "without stacks, the program, and the loader's peak", need.all());

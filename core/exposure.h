@@ -11,6 +11,7 @@
 #include "core/light_film.h"
 #include "core/plan_light_paths.h"
 #include "core/pixel_sums.h"
+#include "core/zeroed_pages.h"
 
 namespace lanewise {
 
@@ -33,7 +34,7 @@ class LightPathDraw {
 // The picture of settings.window().
 struct Exposure {
   Image image;
-  std::vector<uint64_t> samples;  // drawn for each pixel of it
+  ZeroedVector<uint64_t> samples;  // drawn for each pixel of it
   bool stopped = false;           // before all was drawn
   double converged = 1;           // share of its pixels that reached what -a or --noise asks for
   std::optional<ErrorEstimate> error;

@@ -28,8 +28,8 @@ Image develop(const Film& film, uint32_t width, const Window& window, const Film
   return image;
 }
 
-std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window) {
-  std::vector<uint64_t> counts;
+ZeroedVector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window) {
+  ZeroedVector<uint64_t> counts;
   counts.reserve(size_t{window.width} * window.height);
   for (uint32_t y = window.y; y < window.y + window.height; ++y) {
     const auto row = film.samples.begin() + static_cast<ptrdiff_t>(size_t{y} * width + window.x);

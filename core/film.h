@@ -13,8 +13,8 @@
 namespace lanewise {
 
 struct Film {
-  std::vector<PixelSums, ZeroedPages<PixelSums>> sums;  // {} at first
-  std::vector<uint64_t> samples;  // behind each pixel's sums; 0: they are not looked at
+  ZeroedVector<PixelSums> sums;    // {} at first
+  ZeroedVector<uint64_t> samples;  // behind each pixel's sums; 0: they are not looked at
 
   explicit Film(size_t pixels) : sums(pixels), samples(pixels) {}
 };
@@ -22,7 +22,7 @@ struct Film {
 // The mean of each pixel of the window, and how many samples it is of. width: of the whole picture. light: what light paths add,
 // of so many passes; null if there are none. Rows are shared out to threads.
 Image develop(const Film& film, uint32_t width, const Window& window, const Film* light, uint32_t threads);
-std::vector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window);
+ZeroedVector<uint64_t> sample_counts(const Film& film, uint32_t width, const Window& window);
 
 // The mean of a pixel's samples, and the variance of the mean's luminance, were they independent.
 struct PixelMean {

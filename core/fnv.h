@@ -24,8 +24,8 @@ class Fnv {
     add(uint64_t{text.size()});
     for (const char c : text) add(uint64_t{static_cast<unsigned char>(c)});
   }
-  template <class T>
-  void add(const std::vector<T>& values) {
+  template <class T, class Allocator>
+  void add(const std::vector<T, Allocator>& values) {
     add(uint64_t{values.size()});
     for (const T& value : values) {
       if constexpr (std::is_floating_point_v<T>) {

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/zeroed_pages.h"
+
 namespace lanewise {
 
 // What is rendered and read.
@@ -14,10 +16,10 @@ constexpr uint64_t kMostPixels = uint64_t{1} << 28;
 struct Image {
   uint32_t width = 0;
   uint32_t height = 0;
-  std::vector<float> rgb;  // 3 * width * height, interleaved
+  ZeroedVector<float> rgb;  // 3 * width * height, interleaved
 
   Image() = default;
-  Image(uint32_t w, uint32_t h) : width(w), height(h), rgb(size_t{3} * w * h, 0.0f) {}
+  Image(uint32_t w, uint32_t h) : width(w), height(h), rgb(size_t{3} * w * h) {}
   const float* pixel(uint32_t x, uint32_t y) const { return &rgb[3 * (size_t{y} * width + x)]; }
   float* pixel(uint32_t x, uint32_t y) { return &rgb[3 * (size_t{y} * width + x)]; }
 };

@@ -15,7 +15,7 @@ namespace lanewise {
 LightFilm::LightFilm(size_t pixels) : film_(pixels), band_bits_(static_cast<int>(std::bit_width(pixels / kBands))) {}
 
 // Band by band, so that each lock is taken once at most.
-void LightFilm::add(std::vector<Splat>& splats) {
+void LightFilm::add(Splats& splats) {
   std::array<size_t, kBands + 1> begin{};
   for (const Splat& splat : splats) ++begin[band_of(splat.pixel) + 1];
   for (size_t k = 0; k < kBands; ++k) begin[k + 1] += begin[k];
@@ -68,7 +68,7 @@ void LightFilm::add(ByteReader& packed) {
   }
 }
 
-std::string pack_splats(std::vector<Splat>& splats) {
+std::string pack_splats(Splats& splats) {
   std::ranges::sort(splats, {}, &Splat::pixel);
   std::string packed;
   for (auto next = splats.begin(); next != splats.end();) {

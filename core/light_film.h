@@ -19,7 +19,7 @@ class LightFilm {
   explicit LightFilm(size_t pixels);
 
   // From any thread. Leaves the list in another order.
-  void add(std::vector<Splat>& splats);
+  void add(Splats& splats);
 
   // What pack_splats() has made of some; from any thread.
   void add(ByteReader& packed);
@@ -44,7 +44,7 @@ class LightFilm {
 };
 
 // Each pixel that they fall on, in rising order, with its sums packed: for another process. Sorts the list.
-std::string pack_splats(std::vector<Splat>& splats);
+std::string pack_splats(Splats& splats);
 
 // What light paths add to a pixel, from its sums in a LightFilm. The variance is that of a Poisson process: a pixel sees some of
 // very many independent paths.

@@ -52,12 +52,12 @@ Drawn LocalDraw::draw(const std::vector<uint32_t>& pixels, uint64_t first, uint3
   return {profile.rays() - before.rays, profile.invalid_samples - before.invalid_samples};
 }
 
-Drawn LocalDraw::draw_light(const LightPiece& piece, uint32_t worker,
-                            const std::function<void(std::vector<Splat>&)>& take) {
+Drawn LocalDraw::draw_light(const LightPiece& piece, uint32_t worker, const std::function<void(Splats&)>& take) {
   Wave& wave = this->wave(worker);
   const Profile& profile = wave.profiler().profile;
   const Drawn before{profile.rays(), profile.invalid_samples};
-  std::vector<Splat>& splats = splats_[worker];
+  Splats& splats = splats_[worker];
+  splats.reserve(2 * kMostSplats);
   for (uint32_t done = 0; done < piece.count; done += wave.size()) {
     LightPiece part = piece;
     part.first += done;

@@ -22,7 +22,8 @@ struct Drawn {
 class LocalDraw {
  public:
   // The plan must outlast it.
-  LocalDraw(const Plan& plan, uint32_t threads, ProfileDetail detail) : plan_(plan), detail_(detail), waves_(threads), splats_(threads) {}
+  LocalDraw(const Plan& plan, uint32_t threads, ProfileDetail detail)
+      : plan_(plan), detail_(detail), waves_(threads), splats_(threads) {}
 
   // Adds samples first .. first + count - 1 of each of the pixels to its sums, on the thread that is called `worker`.
   // slots: pixel j's sums are sums[slots[j]]; null: sums[pixels[j]].
@@ -30,7 +31,7 @@ class LocalDraw {
              const uint32_t* slots = nullptr);
 
   // Hands what the camera sees of these light paths to take(), some at a time, which may leave the list as it likes.
-  Drawn draw_light(const LightPiece& piece, uint32_t worker, const std::function<void(std::vector<Splat>&)>& take);
+  Drawn draw_light(const LightPiece& piece, uint32_t worker, const std::function<void(Splats&)>& take);
 
   // While no thread draws; of each that has.
   std::vector<Profile> profiles() const;
@@ -42,7 +43,7 @@ class LocalDraw {
   const Plan& plan_;
   ProfileDetail detail_;
   std::vector<std::unique_ptr<Wave>> waves_;
-  std::vector<std::vector<Splat>> splats_;  // of each thread's light paths; empty between calls
+  std::vector<Splats> splats_;  // of each thread's light paths; empty between calls
 };
 
 }  // namespace lanewise

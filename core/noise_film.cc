@@ -219,8 +219,9 @@ Image NoiseFilm::develop() const {
   return image;
 }
 
-std::vector<uint64_t> NoiseFilm::sample_counts() const {
-  std::vector<uint64_t> counts;
+ZeroedVector<uint64_t> NoiseFilm::sample_counts() const {
+  ZeroedVector<uint64_t> counts;
+  counts.reserve(size_t{window_.width} * window_.height);
   for (uint32_t y = window_.y; y < window_.y + window_.height; ++y) {
     for (uint32_t x = window_.x; x < window_.x + window_.width; ++x) {
       const size_t i = size_t{y} * width_ + x;

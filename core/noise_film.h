@@ -17,6 +17,7 @@
 #include "core/image.h"
 #include "core/saved_render.h"
 #include "core/settings.h"
+#include "core/zeroed_pages.h"
 #include "kernels/kernels.h"
 
 namespace lanewise {
@@ -57,7 +58,7 @@ class NoiseFilm {
   // Of the window: its picture, as it would be if the film ended now; the samples drawn for each pixel; and the share of its
   // pixels whose block came to the noise asked for before max_samples.
   Image develop() const;
-  std::vector<uint64_t> sample_counts() const;
+  ZeroedVector<uint64_t> sample_counts() const;
   double converged() const;
 
   // Of the window, as it would be if the film ended now. After the first round.

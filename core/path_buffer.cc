@@ -27,10 +27,11 @@ size_t PathBuffer::bytes(uint32_t capacity) {
   return sizeof(float) * (padded(capacity) + kStagger) * (count_fields() + kResults);
 }
 
-PathBuffer::PathBuffer(uint32_t capacity) : capacity_(round_up_to_lanes(capacity)), padded_(padded(capacity)) {
+PathBuffer::PathBuffer(uint32_t capacity, float* memory)
+    : capacity_(round_up_to_lanes(capacity)), padded_(padded(capacity)) {
   const uint32_t stride = padded_ + kStagger;
-  memory_.assign(bytes(capacity) / sizeof(float), 0.0f);
-  float* next = memory_.data();
+  if (!memory) own_.resize(bytes(capacity) / sizeof(float));
+  float* next = memory ? memory : own_.data();
 #define LANEWISE_PLACE(type, name, meaning)    \
   state_.name = reinterpret_cast<type*>(next); \
   next += stride;
@@ -51,10 +52,10 @@ size_t KeptBuffer::bytes(uint32_t capacity) {
   return capacity == 0 ? 0 : sizeof(float) * kKeptFields * (round_up_to_lanes(capacity) + kStagger);
 }
 
-KeptBuffer::KeptBuffer(uint32_t capacity) : stride_(round_up_to_lanes(capacity) + kStagger) {
+KeptBuffer::KeptBuffer(uint32_t capacity, float* memory) : stride_(round_up_to_lanes(capacity) + kStagger) {
   if (capacity == 0) return;
-  memory_.assign(bytes(capacity) / sizeof(float), 0.0f);
-  float* next = memory_.data();
+  if (!memory) own_.resize(bytes(capacity) / sizeof(float));
+  float* next = memory ? memory : own_.data();
 #define LANEWISE_PLACE(name, meaning) \
   vertices_.name = next;              \
   next += stride_;
@@ -63,11 +64,11 @@ KeptBuffer::KeptBuffer(uint32_t capacity) : stride_(round_up_to_lanes(capacity) 
 }
 
 void KeptBuffer::clear() {
-  if (memory_.empty()) return;
+  if (!vertices_.gain) return;
   for (float* flags : {vertices_.n_x, vertices_.n_y, vertices_.n_z, vertices_.gain}) std::fill_n(flags, stride_, 0.0f);
 }
 
-PathQueue::PathQueue(const PathState& wave) : buffer_(wave.capacity) {
+PathQueue::PathQueue(const PathState& wave, float* memory) : buffer_(wave.capacity, memory) {
   buffer_.state().result_r = wave.result_r;
   buffer_.state().result_g = wave.result_g;
   buffer_.state().result_b = wave.result_b;

@@ -1,17 +1,19 @@
-// Owns the arrays of one PathState.
+// The arrays of one PathState. They, and those below, lie in memory of their own or in some that they are given: of bytes(), zero,
+// from a cache line on, to outlast them.
 #pragma once
 
 #include <array>
 
 #include "core/path_state.h"
 #include "core/plan.h"
+#include "core/zeroed_pages.h"
 
 namespace lanewise {
 
 class PathBuffer {
  public:
   // Room for `capacity` paths (a multiple of kLanes) and the padding of every bin; all slots hold the dummy path.
-  explicit PathBuffer(uint32_t capacity);
+  explicit PathBuffer(uint32_t capacity, float* memory = nullptr);
 
   // Of memory, that such a buffer takes.
   static size_t bytes(uint32_t capacity);
@@ -23,15 +25,15 @@ class PathBuffer {
  private:
   uint32_t capacity_;
   uint32_t padded_;
-  AlignedVector<float> memory_;
+  ZeroedVector<float> own_;
   PathState state_;
 };
 
-// Owns the arrays of KeptVertices.
+// The arrays of KeptVertices.
 class KeptBuffer {
  public:
   // For slots up to `capacity`; 0: none.
-  explicit KeptBuffer(uint32_t capacity);
+  explicit KeptBuffer(uint32_t capacity, float* memory = nullptr);
 
   static size_t bytes(uint32_t capacity);
 
@@ -41,7 +43,7 @@ class KeptBuffer {
 
  private:
   uint32_t stride_ = 0;
-  AlignedVector<float> memory_;
+  ZeroedVector<float> own_;
   KeptVertices vertices_;
 };
 
@@ -50,7 +52,7 @@ class KeptBuffer {
 class PathQueue {
  public:
   // For as many paths as the wave's state holds; they retire to its results.
-  explicit PathQueue(const PathState& wave);
+  explicit PathQueue(const PathState& wave, float* memory = nullptr);
 
   // Copies the KEPT fields of the range behind those that are there.
   void append(const PathState& from, Range range);

@@ -233,7 +233,7 @@ class LightPaths : public LightPathDraw {
   uint64_t draw(const LightPiece& piece, LightFilm& film, uint32_t worker) override {
     Profile& profile = profiles_[worker];
     const uint64_t before = profile.rays();
-    std::vector<Splat> splats;
+    Splats splats;
     const auto see = [&](const Path<T>& p) {
       const bool valid = is_valid(LANEWISE_RGB(p, L));
       if (!valid) ++profile.invalid_samples;

@@ -28,7 +28,7 @@ class LightPaths : public LightPathDraw {
     const uint32_t threads = thread_count(plan_.settings);
     Drawn took;
     if (worker < threads) {
-      took = local_.draw_light(piece, worker, [&](std::vector<Splat>& splats) { film.add(splats); });
+      took = local_.draw_light(piece, worker, [&](Splats& splats) { film.add(splats); });
     } else {
       took = remote_->draw_light(piece, film, worker - threads);
     }

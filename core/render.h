@@ -13,6 +13,7 @@
 #include "core/profiler.h"
 #include "core/render_control.h"
 #include "core/settings.h"
+#include "core/zeroed_pages.h"
 
 namespace lanewise {
 
@@ -53,7 +54,7 @@ struct RenderStats {
 
 struct RenderResult {
   Image image;                    // of settings.window()
-  std::vector<uint64_t> samples;  // per pixel of it
+  ZeroedVector<uint64_t> samples;  // per pixel of it
   RenderStats stats;
   Profile profile;                            // what the statistics are made of, of all threads
   std::vector<std::vector<LoggedCall>> logs;  // of each thread, by the time that calls ended

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "core/dimensions.h"
@@ -49,12 +48,12 @@ class Rounds {
     draw_probes();
     while (const uint32_t count = next_round()) {
       const double begin = intervals_.elapsed();
-      const uint64_t paths = timed() ? paths_behind(done_ + count) : 0;
+      const double paths = paths_left(done_ + count);
       const bool whole = draw_light(done_ + count) && draw_tiles(done_ + count);
       if (whole) done_ += count;
       if (!whole || intervals_.stopped() || (timed() && drawing_time_left() <= 0)) break;
       draw_probes();
-      if (paths > 0) seconds_per_path_ = (intervals_.elapsed() - begin) / static_cast<double>(paths);
+      if (paths > 0) seconds_per_path_ = (intervals_.elapsed() - begin) / paths;
       // To show its error; and under --time, to know how long that takes: but for the last one's time.
       const bool last = done_ >= settings_.spp || (timed() && drawing_time_left() <= closing_);
       if (!last && (control_.progress || timed())) close();
@@ -68,7 +67,7 @@ class Rounds {
   void resume_light(const SavedRender& saved) {
     Film& film = light_film_->film();
     saved.get_film("light", settings_.width, film);
-    const std::vector<uint64_t> passes = sample_counts(film, settings_.width, settings_.window());
+    const ZeroedVector<uint64_t> passes = sample_counts(film, settings_.width, settings_.window());
     bool can_be = passes[0] <= settings_.spp;
     for (const uint64_t n : passes) can_be &= n == passes[0];
     // They are drawn before the samples that they go with; but for the first, by which there are shares.
@@ -186,49 +185,36 @@ class Rounds {
   // Tiles, or groups of one share near each other, of the pixels that have less than their shares of that, all of a tile with as many
   // samples and as many to come. They are of a wave or little less, if that leaves work for all workers.
   std::vector<Tile> tiles_behind(uint64_t samples) const {
-    const std::vector<Tile> tiles = make_tiles(settings_, static_cast<uint32_t>(samples - done_), !shares_.even());
-    struct Run {  // of pixels of a tile that have one share, and as many samples
-      std::span<const uint32_t> pixels;
-      uint64_t first, drawn, more;  // the number of their first sample, samples drawn, and to come
-    };
-    std::vector<Run> runs;
-    uint64_t paths = 0;  // to come
-    for (const Tile& tile : tiles) {
+    constexpr double kPerWorker = 16;
+    const double enough = std::min<double>(settings_.wave, paths_left(samples) / (kPerWorker * workers_));
+    std::vector<Tile> behind;
+    std::map<std::array<uint64_t, 3>, Tile> parts;  // by the number of their first sample, samples drawn, and to come
+    for (const Tile& tile : make_tiles(settings_, static_cast<uint32_t>(samples - done_), !shares_.even())) {
       for (auto begin = tile.pixels.begin(); begin != tile.pixels.end();) {
         const size_t group = shares_.group(*begin);
-        const uint64_t drawn = film_.samples[*begin];
+        const uint64_t drawn = film_.samples[*begin], due = shares_.count(*begin, samples);
         const auto end = std::find_if(begin, tile.pixels.end(), [&](uint32_t pixel) {
           return film_.samples[pixel] != drawn || shares_.group(pixel) != group;
         });
-        if (const uint64_t due = shares_.count(*begin, samples); due > drawn) {
-          const uint64_t more = due - drawn;
-          runs.push_back({{begin, end}, shares_.first(*begin), drawn, more});
-          paths += runs.back().pixels.size() * more;
+        if (due > drawn) {
+          std::vector<uint32_t>& part = parts[{shares_.first(*begin), drawn, due - drawn}].pixels;
+          const auto together = static_cast<double>(part.size() + static_cast<size_t>(end - begin));
+          if (!part.empty() && together * static_cast<double>(due - drawn) > enough)
+            behind.push_back({std::exchange(part, {})});
+          part.insert(part.end(), begin, end);
         }
         begin = end;
       }
     }
-    constexpr uint64_t kPerWorker = 16;
-    const uint64_t enough = std::min<uint64_t>(settings_.wave, paths / (kPerWorker * workers_));
-    std::vector<Tile> behind;
-    std::map<std::array<uint64_t, 3>, Tile> parts;  // by first, drawn, and more
-    for (const auto& [pixels, first, drawn, more] : runs) {
-      std::vector<uint32_t>& part = parts[{first, drawn, more}].pixels;
-      if (!part.empty() && (part.size() + pixels.size()) * more > enough) behind.push_back({std::exchange(part, {})});
-      part.insert(part.end(), pixels.begin(), pixels.end());
-    }
     for (auto& [counts, part] : parts) behind.push_back(std::move(part));
     return behind;
   }
-  uint64_t paths_behind(uint32_t pixel, uint64_t samples) const {
-    const uint64_t due = shares_.count(pixel, samples);
-    return due - std::min(film_.samples[pixel], due);
-  }
-  // Of all pixels.
-  uint64_t paths_behind(uint64_t samples) const {
-    uint64_t paths = 0;
-    for_each_pixel([&](uint32_t i) { paths += paths_behind(i, samples); });
-    return paths;
+  // Of all pixels, to that many samples each on average.
+  double paths_left(uint64_t samples) const {
+    const Window window = settings_.window();
+    uint64_t drawn = 0;
+    for_each_pixel([&](uint32_t i) { drawn += film_.samples[i]; });
+    return std::max(0.0, static_cast<double>(samples) * window.width * window.height - static_cast<double>(drawn));
   }
 
   // Brings every pixel to its share of that many samples. False if time was up, or the render was stopped, before that. The first

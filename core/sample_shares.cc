@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "core/dimensions.h"
 #include "core/image_compare.h"
 #include "core/path_reuse.h"
 #include "core/saved_render.h"
 #include "core/workers.h"
+#include "core/zeroed_pages.h"
 
 namespace lanewise {
 namespace {
@@ -62,7 +64,7 @@ struct Grid {
 };
 
 // Of the samples in each block, and around it: the relative variance within blocks. For every colour.
-ByColour<std::vector<double>> relative_deviations(const Grid& grid, const ByColour<std::vector<Block>>& blocks,
+ByColour<std::vector<double>> relative_deviations(const Grid& grid, const ByColour<std::span<Block>>& blocks,
                                                   uint32_t threads) {
   ByColour<std::vector<double>> variances, deviations;  // variances: times pixels
   variances.fill(std::vector<double>(grid.size())), deviations.fill(std::vector<double>(grid.size()));
@@ -86,7 +88,7 @@ ByColour<std::vector<double>> relative_deviations(const Grid& grid, const ByColo
 
 // Steps in proportion to sigma, each the next by ratio, the largest that come to no more than kEven for each pixel. pixels: of each
 // block.
-std::vector<uint8_t> deal(std::vector<double> sigma, const std::vector<Block>& blocks) {
+std::vector<uint8_t> deal(std::vector<double> sigma, std::span<const Block> blocks) {
   double all = 0, sum = 0;
   for (size_t b = 0; b < blocks.size(); ++b) all += blocks[b].pixels, sum += blocks[b].pixels * sigma[b];
   std::vector<uint8_t> steps(blocks.size(), SampleShares::kEven);
@@ -136,8 +138,9 @@ SampleShares::SampleShares(uint64_t first_sample, uint32_t width, uint32_t heigh
                            const PixelSums* sums, uint32_t threads)
     : SampleShares(first_sample, width) {
   const Grid grid{columns_, (height + kBlock - 1) / kBlock};
-  ByColour<std::vector<Block>> blocks;
-  blocks.fill(std::vector<Block>(grid.size()));
+  ZeroedVector<Block> all(kColours * grid.size());
+  ByColour<std::span<Block>> blocks;
+  for (size_t c = 0; c < kColours; ++c) blocks[c] = std::span(all).subspan(c * grid.size(), grid.size());
   for_each_row(threads, grid.rows, [&](uint32_t row) {
     const uint32_t begin = std::max(row * kBlock, drawn.y), end = std::min((row + 1) * kBlock, drawn.y + drawn.height);
     for (uint32_t y = begin; y < end; ++y) {

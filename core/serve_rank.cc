@@ -61,7 +61,7 @@ std::string drawn(LocalDraw& local, const std::string& request, uint32_t worker,
   const auto desk = in.get<uint32_t>();
   if (kind == MessageKind::kDrawLight) {
     std::string packed;
-    const auto pack_some = [&](std::vector<Splat>& splats) { packed += pack_splats(splats); };
+    const auto pack_some = [&](Splats& splats) { packed += pack_splats(splats); };
     const Drawn took = local.draw_light(in.get<LightPiece>(), worker, pack_some);
     return message(MessageKind::kDrawn).put(desk).put(took).put(packed).take();
   }

@@ -4,7 +4,7 @@
 
 namespace lanewise {
 
-uint32_t add_splats(const PathState& s, Range range, std::vector<Splat>& splats) {
+uint32_t add_splats(const PathState& s, Range range, Splats& splats) {
   const auto valid = [](float x) { return x >= 0 && std::isfinite(x); };
   uint32_t invalid = 0;
   for (uint32_t i = range.begin; i < range.end; ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/path_state.h"
+#include "core/zeroed_pages.h"
 
 namespace lanewise {
 
@@ -14,10 +15,12 @@ struct Splat {
   float r, g, b;
 };
 
+using Splats = ZeroedVector<Splat>;
+
 // More are not kept for long.
 constexpr size_t kMostSplats = 1 << 16;
 
 // Adds the L of the range's paths, at their `raster`. Returns how many were invalid (NaN, infinite or negative), and left out.
-uint32_t add_splats(const PathState& s, Range range, std::vector<Splat>& splats);
+uint32_t add_splats(const PathState& s, Range range, Splats& splats);
 
 }  // namespace lanewise

@@ -50,14 +50,16 @@ inline std::vector<Tile> make_tiles(const Settings& settings, uint32_t samples, 
   const auto next = [side](uint32_t at, uint32_t end) { return std::min((at / side + 1) * side, end); };
   for (uint32_t y0 = window.y; y0 < y_end; y0 = next(y0, y_end)) {
     for (uint32_t x0 = window.x; x0 < x_end; x0 = next(x0, x_end)) {
+      const uint32_t columns = next(x0, x_end) - x0, rows = next(y0, y_end) - y0;
       Tile& tile = tiles.emplace_back();
+      tile.pixels.reserve(size_t{columns} * rows);
       const auto add = [&](uint32_t x, uint32_t y) { tile.pixels.push_back(y * settings.width + x); };
       if (by_groups) {
-        for_each_by_groups({x0, y0, next(x0, x_end) - x0, next(y0, y_end) - y0}, add);
+        for_each_by_groups({x0, y0, columns, rows}, add);
         continue;
       }
-      for (uint32_t y = y0; y < next(y0, y_end); ++y) {
-        for (uint32_t x = x0; x < next(x0, x_end); ++x) add(x, y);
+      for (uint32_t y = y0; y < y0 + rows; ++y) {
+        for (uint32_t x = x0; x < x0 + columns; ++x) add(x, y);
       }
     }
   }

@@ -222,15 +222,20 @@ Bins Wave::sort(Range range, uint32_t paths) {
   return bins;
 }
 
+size_t Wave::bytes(const Plan& plan, uint32_t size) {
+  return 3 * PathBuffer::bytes(size) + (reuses_paths(plan) ? KeptBuffer::bytes(size) : 0);
+}
+
 Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
     : plan_(plan),
       size_(size),
-      buffers_{PathBuffer(size), PathBuffer(size)},
+      reuses_(reuses_paths(plan)),
+      memory_(bytes(plan, size) / sizeof(float)),
+      buffers_{PathBuffer(size, memory(0)), PathBuffer(size, memory(1))},
       state_(buffers_[0].state()),
       spare_(buffers_[1].state()),
-      emitters_(state_),
-      reuses_(reuses_paths(plan)),
-      kept_(reuses_ ? size : 0),
+      emitters_(state_, memory(2)),
+      kept_(reuses_ ? size : 0, memory(3)),
       profiler_(detail) {
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;

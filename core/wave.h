@@ -19,12 +19,17 @@ class Wave {
   void run(const Batch& batch, PixelSums* film);
 
   // Follows the light paths of a piece (at most size()), and adds what the camera sees of them.
-  void run_light_paths(const LightPiece& piece, std::vector<Splat>& splats);
+  void run_light_paths(const LightPiece& piece, Splats& splats);
 
   uint32_t size() const { return size_; }
   const Profiler& profiler() const { return profiler_; }
 
+  // Of memory, that its paths take.
+  static size_t bytes(const Plan& plan, uint32_t size);
+
  private:
+  // The room of the k-th of its four parts.
+  float* memory(size_t k) { return memory_.data() + k * PathBuffer::bytes(size_) / sizeof(float); }
   // Runs a stage's kernel on the range, which holds `paths` living paths, and counts it.
   void run(Stage stage, const PathState& s, Range range, uint32_t paths);
   void run(Stage stage, Range range, uint32_t paths) { run(stage, state_, range, paths); }
@@ -32,7 +37,7 @@ class Wave {
   Bins sort(Range range, uint32_t paths);
   // Counts a call, and clocks it as long as what is returned lasts.
   Profiler::Call count(Stage stage, Range range, uint32_t paths);
-  void see(Range vertices, std::vector<Splat>& splats);
+  void see(Range vertices, Splats& splats);
   void take_adjoint(Range range, uint32_t paths, bool leaving);
   // Notes which paths leave the lamps that come next to light paths.
   void take_lamps(const Bins& bins);
@@ -45,11 +50,12 @@ class Wave {
 
   const Plan& plan_;
   uint32_t size_;
+  bool reuses_;
+  ZeroedVector<float> memory_;  // of all that follows, in one piece
   PathBuffer buffers_[2];
   PathState state_;     // where the paths are now
   PathState spare_;     // where the next sort moves them
   PathQueue emitters_;  // the paths that have met one, of all bounces
-  bool reuses_;
   KeptBuffer kept_;
   Profiler profiler_;
   Profile& profile_ = profiler_.profile;

@@ -4,7 +4,7 @@
 
 namespace lanewise {
 
-void Wave::run_light_paths(const LightPiece& piece, std::vector<Splat>& splats) {
+void Wave::run_light_paths(const LightPiece& piece, Splats& splats) {
   const auto wave = profiler_.wave(piece.count);
   const Settings& settings = plan_.settings;
   state_.batch = {.first_path = piece.first, .paths = piece.count};
@@ -39,7 +39,7 @@ void Wave::run_light_paths(const LightPiece& piece, std::vector<Splat>& splats) 
 }
 
 // The camera sees the vertices of the range.
-void Wave::see(Range vertices, std::vector<Splat>& splats) {
+void Wave::see(Range vertices, Splats& splats) {
   run(Stage::kConnectCamera, vertices);
   profile_.count_rays(Stage::kOcclude, state_.step.bounce, count_shadow_rays(state_, vertices));
   run(Stage::kOcclude, vertices);

@@ -1,5 +1,5 @@
-// Memory of large arrays: zero without being written to, and of huge pages where the system has them. A page of 4 KiB costs a
-// fault, and a render of few samples touches thousands of them; one of 2 MiB costs as much.
+// Memory of large arrays: zero without being written to, and of whole huge pages where the system has them. A page of 4 KiB costs a
+// fault, up to 10 us on a virtual machine, and a render of few samples would touch thousands of them; one of 2 MiB costs little more.
 #pragma once
 
 #include <sys/mman.h>
@@ -7,13 +7,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace lanewise {
 
-// An allocator of elements whose zero bytes are T{}. What a thread is the first to touch is near it.
+constexpr size_t kHugePage = size_t{2} << 20;
+
+// What an array of that many bytes takes: from a quarter of a huge page on, whole ones.
+constexpr size_t paged_bytes(size_t bytes) {
+  return bytes < kHugePage / 4 ? bytes : (bytes + kHugePage - 1) / kHugePage * kHugePage;
+}
+
+// An allocator of elements whose zero bytes are T{}, from a cache line on. What a thread is the first to touch is near it.
 template <class T>
 struct ZeroedPages {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= alignof(std::max_align_t));
@@ -25,12 +34,16 @@ struct ZeroedPages {
 
   T* allocate(size_t n) {
     if (n > PTRDIFF_MAX / sizeof(T)) throw std::bad_array_new_length();
-    void* memory = is_large(n) ? map(n * sizeof(T)) : std::calloc(n, sizeof(T));
+    const size_t bytes = n * sizeof(T);
+    void* const memory =
+        is_large(bytes) ? map(paged_bytes(bytes)) : std::aligned_alloc(kLine, (bytes + kLine - 1) / kLine * kLine);
     if (!memory) throw std::bad_alloc();
+    if (!is_large(bytes)) std::memset(memory, 0, bytes);
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, size_t n) noexcept {
-    is_large(n) ? void(munmap(memory, n * sizeof(T))) : std::free(memory);
+    const size_t bytes = n * sizeof(T);
+    is_large(bytes) ? void(munmap(memory, paged_bytes(bytes))) : std::free(memory);
   }
 
   template <class U>
@@ -42,23 +55,27 @@ struct ZeroedPages {
   bool operator==(const ZeroedPages&) const = default;
 
  private:
-  static constexpr size_t kHugePage = size_t{2} << 20;
-  static bool is_large(size_t n) { return n * sizeof(T) >= 4 * kHugePage; }
+  static constexpr size_t kLine = 64;
+  static bool is_large(size_t bytes) { return bytes >= kHugePage / 4; }
 
-  // From the start of a huge page on.
+  // From the start of a huge page on. What is cut off is never counted as memory in use.
   static void* map(size_t bytes) {
-    const size_t more = bytes + kHugePage;
-    void* const memory = mmap(nullptr, more, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    void* const memory = mmap(nullptr, bytes + kHugePage, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) return nullptr;
-    char* const begin = static_cast<char*>(memory);
-    const size_t before = -reinterpret_cast<uintptr_t>(begin) % kHugePage;
-    constexpr size_t kPage = 4096;
-    const size_t end = (before + bytes + kPage - 1) / kPage * kPage;
-    if (before > 0) munmap(begin, before);
-    if (end < more) munmap(begin + end, more - end);
-    madvise(begin + before, bytes, MADV_HUGEPAGE);  // no harm where it is refused
-    return begin + before;
+    char* const all = static_cast<char*>(memory);
+    const size_t before = -reinterpret_cast<uintptr_t>(all) % kHugePage;
+    if (before > 0) munmap(all, before);
+    munmap(all + before + bytes, kHugePage - before);
+    if (mprotect(all + before, bytes, PROT_READ | PROT_WRITE) != 0) {
+      munmap(all + before, bytes);
+      return nullptr;
+    }
+    madvise(all + before, bytes, MADV_HUGEPAGE);  // no harm where it is refused
+    return all + before;
   }
 };
+
+template <class T>
+using ZeroedVector = std::vector<T, ZeroedPages<T>>;
 
 }  // namespace lanewise

@@ -63,7 +63,7 @@ ProcessResult render_small(const TemporaryFolder& folder, const Arguments& more)
 }
 
 // The values of the picture that these flags make.
-std::vector<float> picture_of(const TemporaryFolder& folder, const Arguments& more) {
+ZeroedVector<float> picture_of(const TemporaryFolder& folder, const Arguments& more) {
   const std::string path = folder.file("picture.pfm");
   std::filesystem::remove(path);
   const ProcessResult result = render_small(folder, more + Arguments{"-f", path});
@@ -248,7 +248,7 @@ TEST_CASE("command line: flags stand before or after the scene, short or long") 
   const Arguments long_flags = {"--threads=2",  "--spp", "8",  "--light-samples", "2", "--max-depth", "3",
                                 "--resolution", "16",    "12", "--adaptive",      "4", "0.05",        "--quiet"};
   const Arguments output = {"-f", "picture.pfm"};
-  std::vector<std::vector<float>> pictures;
+  std::vector<ZeroedVector<float>> pictures;
   for (const Arguments& arguments :
        {Arguments{"render"} + flags + output + Arguments{box()}, Arguments{"render", box()} + flags + output,
         Arguments{"render"} + output + flags + Arguments{box()}, Arguments{"render", box()} + output + flags,
@@ -266,7 +266,7 @@ TEST_CASE("command line: flags stand before or after the scene, short or long") 
 TEST_CASE("command line: -H is --direct hemisphere, and the last of two equal flags holds") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
-  const std::vector<float> hemisphere = picture_of(folder, {box(), "-H"});
+  const ZeroedVector<float> hemisphere = picture_of(folder, {box(), "-H"});
   CHECK(hemisphere == picture_of(folder, {box(), "--direct", "hemisphere"}));
   CHECK(hemisphere == picture_of(folder, {box(), "--direct", "light", "--direct", "hemisphere", "-H"}));
   CHECK(hemisphere != picture_of(folder, {box()}));
@@ -340,7 +340,7 @@ TEST_CASE("command line: a summary of a few lines, unless quiet") {
 TEST_CASE("command line: the pixels depend on neither threads nor wave, but on the seed") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
-  const std::vector<float> one = picture_of(folder, {box(), "-t", "1"});
+  const ZeroedVector<float> one = picture_of(folder, {box(), "-t", "1"});
   CHECK(one == picture_of(folder, {box(), "-t", "2"}));
   CHECK(one == picture_of(folder, {box(), "-t", "3", "--wave", "16"}));
   CHECK(one == picture_of(folder, {box(), "--wave", "256"}));
@@ -409,7 +409,7 @@ TEST_CASE(
   CHECK(error["value"].get<double>() > 0.01);
   CHECK(error["low"].get<double>() < error["value"].get<double>());
   CHECK(error["high"].get<double>() > error["value"].get<double>());
-  const std::vector<float> picture = read_image(folder.file("a.pfm")).rgb;
+  const ZeroedVector<float> picture = read_image(folder.file("a.pfm")).rgb;
   const ProcessResult without = lanewise(folder, flags + Arguments{"--no-estimate"});
   CHECK(without.out.find("estimated") == std::string::npos);
   CHECK(!nlohmann::json::parse(test::read_text(folder.file("a.json"))).contains("estimated_mrse"));
@@ -419,7 +419,7 @@ TEST_CASE(
 TEST_CASE("command line: --time ends by itself, and with -s where that comes first") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
-  const std::vector<float> four = picture_of(folder, {box()});  // -s 4
+  const ZeroedVector<float> four = picture_of(folder, {box()});  // -s 4
   for (const auto& [time, seconds] : std::vector<std::pair<std::string, double>>{{"1000", 1000},
                                                                                  {"1234.5s", 1234.5},
                                                                                  {"500000ms", 500},
@@ -459,7 +459,7 @@ TEST_CASE("command line: overrides change the materials that they name") {
   if (nothing_to_test()) return;
   const TemporaryFolder folder;
   const std::string metal = scene("cornell_metal.dae");
-  const std::vector<float> plain = picture_of(folder, {metal});
+  const ZeroedVector<float> plain = picture_of(folder, {metal});
   CHECK(picture_of(folder, {metal, "--metal", "Hg"}) != plain);
   CHECK(picture_of(folder, {metal, "--metal", "Hg"}) == picture_of(folder, {metal, "--metal", "Mercury"}));
   CHECK(picture_of(folder, {metal, "--metal", "Cr"}) != picture_of(folder, {metal, "--metal", "cr-printed"}));

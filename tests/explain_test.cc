@@ -8,6 +8,7 @@
 #include "core/path_buffer.h"
 #include "core/render.h"
 #include "core/scene.h"
+#include "core/splats.h"
 #include "core/verify/test_scene.h"
 #include "kernels/kernels.h"
 
@@ -178,7 +179,9 @@ TEST_CASE("explain: memory adds up") {
   const Decision* scene = find(decisions, "memory", "scene");
   REQUIRE(scene);
   CHECK(sum(decisions, "memory", "bytes") == 2 * figure(*all, "bytes") + figure(*scene, "bytes"));
-  CHECK(figure(*threads, "bytes") == 3.0 * static_cast<double>(3 * PathBuffer::bytes(256) + KeptBuffer::bytes(256)));
+  const size_t splats = paged_bytes(2 * kMostSplats * sizeof(Splat));
+  CHECK(figure(*threads, "bytes") ==
+        3.0 * static_cast<double>(3 * PathBuffer::bytes(256) + KeptBuffer::bytes(256) + splats));
   CHECK(figure(*find(decisions, "memory", "film"), "per_pixel") >= sizeof(PixelSums));
   // An array of a field for every slot, at least.
   CHECK(PathBuffer::bytes(256) >= 256 * 4 * 32);

@@ -136,7 +136,7 @@ TEST_CASE("image_io: .pfm of either byte order, grey or coloured") {
   const TemporaryFolder folder;
   test::write_text(folder.file("a.pfm"), std::string("Pf\n1 2\n1.0\n") + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
   const Image image = read_image(folder.file("a.pfm"));
-  CHECK(image.rgb == std::vector<float>{2, 2, 2, 1, 1, 1});  // the file's last row is the top one
+  CHECK(image.rgb == ZeroedVector<float>{2, 2, 2, 1, 1, 1});  // the file's last row is the top one
 }
 
 TEST_CASE("image_io: .exr carries the metadata as string attributes") {

@@ -249,7 +249,7 @@ TEST_CASE("light paths: a lamp that is switched off sends out none") {
 TEST_CASE("light film: the same sums from any thread, in any order") {
   constexpr size_t kPixels = 5000;
   std::mt19937 rng(3);
-  std::vector<Splat> splats;
+  Splats splats;
   for (int i = 0; i < 20000; ++i) {
     const auto value = [&] { return std::uniform_real_distribution<float>(0, 3)(rng); };
     splats.push_back({static_cast<uint32_t>(rng() % kPixels), value(), value(), value()});
@@ -262,7 +262,7 @@ TEST_CASE("light film: the same sums from any thread, in any order") {
     threads.emplace_back([&, k] {
       for (size_t i = 0; i < 5; ++i) {
         const auto first = splats.begin() + static_cast<ptrdiff_t>(5000 * k + 1000 * i);
-        std::vector<Splat> some(first, first + 1000);
+        Splats some(first, first + 1000);
         many.add(some);
       }
     });
@@ -283,7 +283,7 @@ TEST_CASE("light film: the same sums from any thread, in any order") {
   CHECK(many.passes() == 3);
   const Splat& s = splats.front();
   LightFilm single(kPixels);
-  std::vector<Splat> twice = {s, s};
+  Splats twice = {s, s};
   single.add(twice);
   const PixelMean mean = light_mean(single.film().sums[s.pixel], 4);
   const double y = luminance(double(s.r), double(s.g), double(s.b));

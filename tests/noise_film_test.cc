@@ -32,7 +32,7 @@ TEST_CASE("noise film: calm pixels end at once, noisy ones where their error is 
   std::mt19937 rng(1);
   std::exponential_distribution<double> noisy(1.0);  // sigma = mean = 1: 20^2 samples / 1.01^2
   draw_all(film, [&](uint32_t, uint32_t pixel) { return pixel % 64 < 32 ? 1.0 : noisy(rng); });
-  const std::vector<uint64_t> counts = film.sample_counts();
+  const ZeroedVector<uint64_t> counts = film.sample_counts();
   CHECK(counts[0] == 2 * NoiseFilm::kFirstSamples);
   CHECK(counts[63] > 350);
   CHECK(counts[63] < 650);
@@ -52,7 +52,7 @@ TEST_CASE("noise film: what never calms down has not converged, and ends at the 
   NoiseFilm film(40, 8, {0, 0, 40, 8}, 0.5, 101);
   int drawn[2] = {0, 0};  // of the pixel whose every half has one bright sample, the first
   draw_all(film, [&](uint32_t half, uint32_t pixel) { return pixel != 3 ? 1.0 : drawn[half]++ == 0 ? 1e6 : 0.0; });
-  const std::vector<uint64_t> counts = film.sample_counts();
+  const ZeroedVector<uint64_t> counts = film.sample_counts();
   CHECK(counts[3] == 100);
   CHECK(counts[15] == 100);  // the block beside it
   CHECK(counts[16] == 2 * NoiseFilm::kFirstSamples);

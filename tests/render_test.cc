@@ -141,10 +141,10 @@ TEST_CASE("render: the same bits for any number of threads and any wave") {
 
 TEST_CASE("render: FMA targets agree bit for bit") {
   const Plan plan = make_plan(test::test_scene(), small());
-  std::vector<float> first;
+  ZeroedVector<float> first;
   test::for_each_target([&](const char* target) {
     if (std::string(target) != "avx2" && std::string(target) != "avx512") return;
-    const std::vector<float> rgb = render(plan).image.rgb;
+    const ZeroedVector<float> rgb = render(plan).image.rgb;
     if (first.empty()) first = rgb;
     CHECK(rgb == first);
   });

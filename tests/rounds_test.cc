@@ -30,7 +30,7 @@ Settings picture() {
   return settings;
 }
 
-uint64_t range(const std::vector<uint64_t>& samples) {
+uint64_t range(const ZeroedVector<uint64_t>& samples) {
   const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
   return *most - *least;
 }
@@ -83,10 +83,10 @@ TEST_CASE("rounds: a pixel has a sample however little time there is, and no mor
   MadeUpTime time(1);
   Settings settings = picture();
   settings.seconds = 1e-9;
-  CHECK(expose(settings, 2, time.draw(), {.clock = time.clock()}).samples == std::vector<uint64_t>(160 * 128, 1));
+  CHECK(expose(settings, 2, time.draw(), {.clock = time.clock()}).samples == ZeroedVector<uint64_t>(160 * 128, 1));
   settings.seconds = 1e9;
   settings.spp = 21;
-  CHECK(expose(settings, 1, time.draw(), {.clock = time.clock()}).samples == std::vector<uint64_t>(160 * 128, 21));
+  CHECK(expose(settings, 1, time.draw(), {.clock = time.clock()}).samples == ZeroedVector<uint64_t>(160 * 128, 21));
 }
 
 TEST_CASE("rounds: the picture of a time is that of as many samples") {

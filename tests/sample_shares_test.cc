@@ -66,7 +66,7 @@ double error_of(const Exposure& exposure) {
   return compare_images(exposure.image, truth).mrse;
 }
 
-double mean(const std::vector<uint64_t>& samples) {
+double mean(const ZeroedVector<uint64_t>& samples) {
   return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
 }
 

@@ -278,7 +278,7 @@ TEST_CASE("textures: JPEG, and pictures for other renderers are what is rendered
     found = true;
     write_text(folder.file("albedo.pfm"), file.bytes);
     const Image map = read_image(folder.file("albedo.pfm"));
-    CHECK(map.rgb == std::vector<float>{1, 0, 0, 0, 0, 1});
+    CHECK(map.rgb == ZeroedVector<float>{1, 0, 0, 0, 0, 1});
   }
   CHECK(found);
 }

@@ -8,7 +8,7 @@
 
 namespace lanewise {
 
-Image rate_picture(const std::string& path, const std::vector<uint64_t>& samples, uint32_t width, uint32_t height) {
+Image rate_picture(const std::string& path, const ZeroedVector<uint64_t>& samples, uint32_t width, uint32_t height) {
   const bool colours = holds_colours(path);
   const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
   const double low = std::log(static_cast<double>(*fewest)), span = std::log(static_cast<double>(*most)) - low;

@@ -114,7 +114,7 @@ TEST_SUITE("stability") {
     finish_scene(clean);
     Scene smooth = clean;
     apply_normals(smooth, Normals::kSmooth);
-    const std::vector<float> want = sound_render(smooth, small()).image.rgb;
+    const ZeroedVector<float> want = sound_render(smooth, small()).image.rgb;
     Settings ball = small();  // the pixels in the middle of the mesh
     ball.crop = {15, 9, 3, 3}, ball.spp = 64;
     const double brightness = mean(sound_render(smooth, ball).image);

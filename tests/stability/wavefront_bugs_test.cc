@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "core/render.h"
 #include "tests/kernel_harness.h"
@@ -39,7 +40,7 @@ double mean(const Image& image) {
 double difference(const Image& a, const Image& b) { return std::abs(mean(a) / mean(b) - 1); }
 
 // The share of pixels whose bits differ.
-double changed(const std::vector<float>& a, const std::vector<float>& b) {
+double changed(std::span<const float> a, std::span<const float> b) {
   size_t n = 0;
   for (size_t i = 0; i < a.size(); i += 3) n += !std::equal(&a[i], &a[i] + 3, &b[i]);
   return 3.0 * static_cast<double>(n) / static_cast<double>(a.size());
@@ -277,7 +278,8 @@ TEST_SUITE("stability") {
       return film;
     };
     settings.wave = 4096;
-    const std::vector<float> naive_want = naive(4096), want = render(make_plan(test::test_scene(), settings)).image.rgb;
+    const std::vector<float> naive_want = naive(4096);
+    const ZeroedVector<float> want = render(make_plan(test::test_scene(), settings)).image.rgb;
     for (const uint32_t wave : {16u, 64u, 256u, 1024u, 8192u}) {
       settings.wave = wave;
       double ours = 0;
