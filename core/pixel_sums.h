@@ -59,13 +59,15 @@ class ExactSum {
   template <class T>
   T as() const {
     if constexpr (std::is_same_v<T, double>) {
-      // The first 63 digits, which processors convert by themselves; the last of them tells whether anything is below.
+      constexpr double kUnit = 1 / static_cast<double>(Uint128{1} << kPlaces);
       const auto high = static_cast<uint64_t>(units_ >> 64), low = static_cast<uint64_t>(units_);
-      const int below = high == 0 ? static_cast<int>(low >> 63) : 65 - std::countl_zero(high);
-      const bool rest = (units_ & ((Uint128{1} << below) - 1)) != 0;
-      const auto digits = static_cast<int64_t>(units_ >> below) | int64_t{rest};
-      const double unit = std::bit_cast<double>(static_cast<uint64_t>(1023 + below - kPlaces) << 52);
-      return static_cast<double>(digits) * unit;
+      if (high == 0 && low >> 63 == 0) return static_cast<double>(static_cast<int64_t>(low)) * kUnit;
+      // The first 63 digits, which processors convert by themselves; the last of them tells whether anything is below.
+      const int zeros = high == 0 ? 64 : std::countl_zero(high);
+      const uint64_t first = zeros == 0 ? high : zeros == 64 ? low : high << zeros | low >> (64 - zeros);
+      const bool rest = first % 2 != 0 || (zeros < 64 && low << zeros != 0);
+      const double unit = std::bit_cast<double>(static_cast<uint64_t>(1023 + 65 - zeros - kPlaces) << 52);
+      return static_cast<double>(static_cast<int64_t>(first >> 1 | uint64_t{rest})) * unit;
     } else {
       return static_cast<T>(units_) * static_cast<T>(1 / static_cast<double>(Uint128{1} << kPlaces));
     }
