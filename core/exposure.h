@@ -35,8 +35,8 @@ class LightPathDraw {
 struct Exposure {
   Image image;
   ZeroedVector<uint64_t> samples;  // drawn for each pixel of it
-  bool stopped = false;           // before all was drawn
-  double converged = 1;           // share of its pixels that reached what -a or --noise asks for
+  bool stopped = false;            // before all was drawn
+  double converged = 1;            // share of its pixels that reached what -a or --noise asks for
   std::optional<ErrorEstimate> error;
 };
 

@@ -25,8 +25,8 @@ namespace lanewise {
 class NoiseFilm {
  public:
   static constexpr uint32_t kHalves = 2;
-  static constexpr uint32_t kFirstSamples = 16;    // of each half before anything is decided
-  static constexpr uint32_t kBlock = 8;            // side of a block in pixels, on a grid from the picture's corner
+  static constexpr uint32_t kFirstSamples = 16;  // of each half before anything is decided
+  static constexpr uint32_t kBlock = 8;          // side of a block in pixels, on a grid from the picture's corner
 
   // Draws the blocks that can have a say in the window's pixels, of a picture of width x height. noise: the standard error
   // that luminance may keep, relative to itself + kLeastRadiance, root mean square over a block. max_samples: of a pixel,

@@ -53,7 +53,7 @@ struct RenderStats {
 };
 
 struct RenderResult {
-  Image image;                    // of settings.window()
+  Image image;                     // of settings.window()
   ZeroedVector<uint64_t> samples;  // per pixel of it
   RenderStats stats;
   Profile profile;                            // what the statistics are made of, of all threads
