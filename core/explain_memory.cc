@@ -88,7 +88,7 @@ MemoryNeed memory_need(const Plan& plan, bool saved) {
   const size_t film =
       films * (paged_bytes(sizeof(PixelSums) * pixels) + paged_bytes(sizeof(uint64_t) * pixels) + estimate * pixels) +
       paged_bytes(3 * sizeof(float) * shown) + paged_bytes(sizeof(uint64_t) * shown);
-  const size_t splats = has_light_paths(plan) ? paged_bytes(2 * kMostSplats * sizeof(Splat)) : 0;
+  const size_t splats = has_light_paths(plan) ? paged_bytes(kSplatRoom * sizeof(Splat)) : 0;
   constexpr size_t kEncoded = 6 * sizeof(float);  // of a pixel, in any format, with what it is made from
   // Means; with --noise also their squared errors, both in arrays that grow.
   const size_t pictures = has_light_paths(plan) ? 3 : 1;  // without, with and of the light paths alone

@@ -57,7 +57,7 @@ Drawn LocalDraw::draw_light(const LightPiece& piece, uint32_t worker, const std:
   const Profile& profile = wave.profiler().profile;
   const Drawn before{profile.rays(), profile.invalid_samples};
   Splats& splats = splats_[worker];
-  splats.reserve(2 * kMostSplats);
+  splats.reserve(kSplatRoom);
   for (uint32_t done = 0; done < piece.count; done += wave.size()) {
     LightPiece part = piece;
     part.first += done;

@@ -1,5 +1,5 @@
 // Memory of large arrays: zero without being written to, and of whole huge pages where the system has them. A page of 4 KiB costs a
-// fault, up to 10 us on a virtual machine, and a render of few samples would touch thousands of them; one of 2 MiB costs little more.
+// fault, which is dear on a virtual machine, and a render of few samples would touch thousands of them; one of 2 MiB costs little more.
 #pragma once
 
 #include <sys/mman.h>
@@ -17,9 +17,10 @@ namespace lanewise {
 
 constexpr size_t kHugePage = size_t{2} << 20;
 
-// What an array of that many bytes takes: from a quarter of a huge page on, whole ones.
+// Whether an array of that many bytes lies in huge pages of its own, and what it takes then: whole ones.
+constexpr bool is_paged(size_t bytes) { return bytes >= kHugePage / 4; }
 constexpr size_t paged_bytes(size_t bytes) {
-  return bytes < kHugePage / 4 ? bytes : (bytes + kHugePage - 1) / kHugePage * kHugePage;
+  return is_paged(bytes) ? (bytes + kHugePage - 1) / kHugePage * kHugePage : bytes;
 }
 
 // An allocator of elements whose zero bytes are T{}, from a cache line on. What a thread is the first to touch is near it.
@@ -36,14 +37,14 @@ struct ZeroedPages {
     if (n > PTRDIFF_MAX / sizeof(T)) throw std::bad_array_new_length();
     const size_t bytes = n * sizeof(T);
     void* const memory =
-        is_large(bytes) ? map(paged_bytes(bytes)) : std::aligned_alloc(kLine, (bytes + kLine - 1) / kLine * kLine);
+        is_paged(bytes) ? map(paged_bytes(bytes)) : std::aligned_alloc(kLine, (bytes + kLine - 1) / kLine * kLine);
     if (!memory) throw std::bad_alloc();
-    if (!is_large(bytes)) std::memset(memory, 0, bytes);
+    if (!is_paged(bytes)) std::memset(memory, 0, bytes);
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, size_t n) noexcept {
     const size_t bytes = n * sizeof(T);
-    is_large(bytes) ? void(munmap(memory, paged_bytes(bytes))) : std::free(memory);
+    is_paged(bytes) ? void(munmap(memory, paged_bytes(bytes))) : std::free(memory);
   }
 
   template <class U>
@@ -56,7 +57,6 @@ struct ZeroedPages {
 
  private:
   static constexpr size_t kLine = 64;
-  static bool is_large(size_t bytes) { return bytes >= kHugePage / 4; }
 
   // From the start of a huge page on. What is cut off is never counted as memory in use.
   static void* map(size_t bytes) {

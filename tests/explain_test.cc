@@ -179,7 +179,7 @@ TEST_CASE("explain: memory adds up") {
   const Decision* scene = find(decisions, "memory", "scene");
   REQUIRE(scene);
   CHECK(sum(decisions, "memory", "bytes") == 2 * figure(*all, "bytes") + figure(*scene, "bytes"));
-  const size_t splats = paged_bytes(2 * kMostSplats * sizeof(Splat));
+  const size_t splats = paged_bytes(kSplatRoom * sizeof(Splat));
   CHECK(figure(*threads, "bytes") ==
         3.0 * static_cast<double>(3 * PathBuffer::bytes(256) + KeptBuffer::bytes(256) + splats));
   CHECK(figure(*find(decisions, "memory", "film"), "per_pixel") >= sizeof(PixelSums));
