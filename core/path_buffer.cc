@@ -65,7 +65,7 @@ KeptBuffer::KeptBuffer(uint32_t capacity, float* memory) : stride_(round_up_to_l
 
 void KeptBuffer::clear() {
   if (!vertices_.gain) return;
-  for (float* flags : {vertices_.n_x, vertices_.n_y, vertices_.n_z, vertices_.gain}) std::fill_n(flags, stride_, 0.0f);
+  for (float* flags : {vertices_.gain, vertices_.bounce}) std::fill_n(flags, stride_, 0.0f);
 }
 
 PathQueue::PathQueue(const PathState& wave, float* memory) : buffer_(wave.capacity, memory) {

@@ -1,10 +1,11 @@
 // Paths of neighbouring pixels used again: light that comes to a diffuse surface from another diffuse one (Bekaert, Sbert & Halton,
 // Accelerating Path Tracing by Re-Using Paths, EGWR 2002).
 //
-// The samples of the same number of kPathsTogether pixels, a square of the picture, are drawn together. Where the camera sees
-// diffuse surfaces, at x_i, and the path of pixel j goes from x_j to a diffuse surface at y_j, what it finds from there on, the
-// radiance L_j that y_j sends out, is not its pixel's alone: each x_i that sees y_j could have chosen it. By the balance
-// heuristic of all of them (Veach 1997, eq. 9.8) pixel i gets
+// The samples of the same number of kPathsTogether pixels, a square of the picture, are drawn together. Where the path of pixel i
+// comes to its first diffuse surface, at x_i, seen by the camera or by way of others, and that of pixel j goes from x_j straight
+// to a diffuse surface at y_j, what it finds from there on, the radiance L_j that y_j sends out, is not its pixel's alone: each
+// x_i that sees y_j, behind as many scattering events, could have chosen it. By the balance heuristic of all of them (Veach 1997,
+// eq. 9.8) pixel i gets
 //
 //   sum over j of  f_i L_j w_ij,    w_ij = p_i(y_j) V(x_i, y_j) / sum over k of p_k(y_j) V(x_k, y_j)
 //
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "core/plan.h"
+#include "kernels/kernels.h"
 
 namespace lanewise {
 
@@ -28,9 +30,15 @@ constexpr float kLeastShared = 1e-30f;
 
 constexpr uint32_t kTogetherSide = 2, kPathsTogether = kTogetherSide * kTogetherSide;
 
+// A path's first diffuse vertex is kept at bounces below this: if roulette came between it and the second, the density of that
+// would be another.
+constexpr uint32_t kFirstBounces = kRouletteBounce;
+
 // Why paths are not used again; "" if they are.
 const char* why_no_reuse(const Plan& plan);
 inline bool reuses_paths(const Plan& plan) { return *why_no_reuse(plan) == '\0'; }
+// Bounces at which there may be such a vertex, 0 to this - 1; 0: paths are not used again.
+uint32_t first_bounces(const Plan& plan);
 
 // Of the squares of pixels that hang together.
 inline uint32_t side_together(const Plan& plan) { return reuses_paths(plan) ? kTogetherSide : 1; }

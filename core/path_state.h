@@ -105,8 +105,8 @@ struct Batch {
   uint32_t paths = 0;  // at most the wave's size
 };
 
-// Of paths that are used again (core/path_reuse.h): what is kept of their first two vertices, by slot, capacity + kLanes elements
-// each; null where none are. Slots that hold a path without such a vertex have n = 0, or gain = 0.
+// Of paths that are used again (core/path_reuse.h): what is kept of two of their vertices, by slot, capacity + kLanes elements
+// each; null where none are. bounce says whether there is a first one, gain > 0 whether there is a second.
 //   X(name, meaning)
 #define LANEWISE_KEPT_FIELDS(X)                                                 \
   X(x_x, "first vertex: ray origin, offset off the surface")                    \
@@ -127,7 +127,8 @@ struct Batch {
   X(L_r, "radiance that the path gathered before it")                           \
   X(L_g, "")                                                                    \
   X(L_b, "")                                                                    \
-  X(gain, "makes radiance at y, towards x, of what it has gathered since then")
+  X(gain, "makes radiance at y, towards x, of what it has gathered since then") \
+  X(bounce, "of y if x is kept; 0: no diffuse surface yet; negative: its first one is not to be shared")
 
 #define LANEWISE_COUNT(name, meaning) +1
 constexpr uint32_t kKeptFields = 0 LANEWISE_KEPT_FIELDS(LANEWISE_COUNT);

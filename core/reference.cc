@@ -128,10 +128,10 @@ void trace(const Plan& plan, Path<T>& p, Profile& profile, reference::KeptPath<T
     reference::surface(plan, p);
     if (!plan.textures.empty() && p.bin == kDiffuse) reference::texture(plan, p);
     take_lamps(plan, p, false);
-    if (kept && bounce == 1 && p.bin == kDiffuse) reference::keep_second(p, *kept);
+    if (kept && bounce > 0 && p.bin == kDiffuse) reference::keep_second(p, *kept);
     add_direct_light(plan, p, profile);
     shade(plan, p);
-    if (kept && bounce == 0 && p.bin == kDiffuse) reference::keep_first(p, *kept);
+    if (kept && bounce < kFirstBounces && p.bin == kDiffuse) reference::keep_first(p, *kept);
     if (!plan.prim_normals.empty()) take_lamps(plan, p, true);
     reference::roulette(plan, p);
     if (p.beta_r == 0 && p.beta_g == 0 && p.beta_b == 0) return profile.count_paths(bounce + 1, 1);

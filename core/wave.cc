@@ -116,10 +116,10 @@ void Wave::run(const Batch& batch, PixelSums* film) {
     run(Stage::kSurface, live, paths);
     if (!plan_.textures.empty()) run(Stage::kTexture, bins[kDiffuse]);
     take_lamps(bins);
-    if (bounce == 1 && reuses_) run(Stage::kKeepSecond, bins[kDiffuse]);
+    if (bounce > 0 && bounce <= first_bounces_) run(Stage::kKeepSecond, bins[kDiffuse]);
     add_direct_light(bins);
     for (const ShadeStages& stages : plan_.shade_stages) run(stages.shade, bins[stages.bin]);
-    if (bounce == 0 && reuses_) run(Stage::kKeepFirst, bins[kDiffuse]);
+    if (bounce < first_bounces_) run(Stage::kKeepFirst, bins[kDiffuse]);
     leave_lamps(live, paths);
     if (bounce >= kRouletteBounce) run(Stage::kRoulette, live, paths);
   }
@@ -129,7 +129,7 @@ void Wave::run(const Batch& batch, PixelSums* film) {
   const Range met = emitters_.take();
   run(Stage::kEmission, emitters_.state(), met, met.size());
   run(Stage::kRetire, emitters_.state(), met, met.size());
-  if (reuses_) share_paths({0, batch.paths});
+  if (first_bounces_ > 0) share_paths({0, batch.paths});
 
   const auto call = count(Stage::kAccumulate, {0, batch.paths}, batch.paths);
   profile_.invalid_samples += accumulate(state_, film);
@@ -229,13 +229,13 @@ size_t Wave::bytes(const Plan& plan, uint32_t size) {
 Wave::Wave(const Plan& plan, uint32_t size, ProfileDetail detail)
     : plan_(plan),
       size_(size),
-      reuses_(reuses_paths(plan)),
+      first_bounces_(first_bounces(plan)),
       memory_(bytes(plan, size) / sizeof(float)),
       buffers_{PathBuffer(size, memory(0)), PathBuffer(size, memory(1))},
       state_(buffers_[0].state()),
       spare_(buffers_[1].state()),
       emitters_(state_, memory(2)),
-      kept_(reuses_ ? size : 0, memory(3)),
+      kept_(first_bounces_ > 0 ? size : 0, memory(3)),
       profiler_(detail) {
   spare_.result_r = state_.result_r;
   spare_.result_g = state_.result_g;

@@ -50,7 +50,7 @@ class Wave {
 
   const Plan& plan_;
   uint32_t size_;
-  bool reuses_;
+  uint32_t first_bounces_;
   ZeroedVector<float> memory_;  // of all that follows, in one piece
   PathBuffer buffers_[2];
   PathState state_;     // where the paths are now

@@ -32,10 +32,17 @@ HWY_INLINE VI SlotsWhere(const PathState& s, size_t i, MF keeps) {
 }
 
 void KeepFirst(const Plan&, const PathState& s, Range range) {
+  const DF d;
   const KeptVertices& kept = s.kept;
-  for (size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) {
+  const VF zero = hn::Zero(d), next = Splat(static_cast<float>(s.step.bounce + 1));
+  for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
+    const VI own_slot = hn::BitCast(DI(), hn::Load(DU(), s.slot + i));
+    const MF first = hn::Eq(hn::GatherIndex(d, kept.bounce, own_slot), zero);
+    if (hn::AllFalse(d, first)) continue;
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
-    const VI slot = SlotsWhere(s, i, hn::And(IsFlat(s, i), hn::Gt(MaxElement(beta), hn::Zero(DF()))));
+    const MF keeps = hn::And(first, hn::And(IsFlat(s, i), hn::Gt(MaxElement(beta), zero)));
+    hn::ScatterIndex(hn::IfThenElse(keeps, next, Splat(-1.0f)), d, kept.bounce, SlotsWhere(s, i, first));
+    const VI slot = SlotsWhere(s, i, keeps);
     ScatterVec3(LoadVec3(s.o_x, s.o_y, s.o_z, i), kept.x_x, kept.x_y, kept.x_z, slot);
     const Vec3 n = NormalTowards(s, i, LoadVec3(s.d_x, s.d_y, s.d_z, i));
     ScatterVec3(n, kept.n_x, kept.n_y, kept.n_z, slot);
@@ -46,13 +53,15 @@ void KeepFirst(const Plan&, const PathState& s, Range range) {
 void KeepSecond(const Plan&, const PathState& s, Range range) {
   const DF d;
   const KeptVertices& kept = s.kept;
-  const VF zero = hn::Zero(d), one = Splat(1.0f), least = Splat(kLeastShared);
+  const VF one = Splat(1.0f), least = Splat(kLeastShared);
+  const VF bounce = Splat(static_cast<float>(s.step.bounce));
   for (size_t i = range.begin; i < range.end; i += hn::Lanes(d)) {
     const VI own_slot = hn::BitCast(DI(), hn::Load(DU(), s.slot + i));
-    const Vec3 first = GatherVec3(kept.n_x, kept.n_y, kept.n_z, own_slot);
+    const MF second = hn::Eq(hn::GatherIndex(d, kept.bounce, own_slot), bounce);
+    if (hn::AllFalse(d, second)) continue;
     const Vec3 beta = LoadVec3(s.beta_r, s.beta_g, s.beta_b, i);
     const VF most = MaxElement(beta);
-    const MF keeps = hn::And(hn::And(IsFlat(s, i), hn::Gt(most, least)), hn::Gt(Dot(first, first), zero));
+    const MF keeps = hn::And(second, hn::And(IsFlat(s, i), hn::Gt(most, least)));
     const VI slot = SlotsWhere(s, i, keeps);
     const Vec3 n = NormalTowards(s, i, Neg(LoadVec3(s.d_x, s.d_y, s.d_z, i)));
     ScatterVec3(MulAdd(hn::Load(d, s.err + i), n, LoadVec3(s.o_x, s.o_y, s.o_z, i)), kept.y_x, kept.y_y, kept.y_z,

@@ -71,15 +71,15 @@ void take_lamps(const Plan& plan, const PathState& s, Range range);
 constexpr KernelFields kTakeLampsFields = {.reads = "d n s lamps step", .writes = "lamps"};
 constexpr KernelBounds kTakeLampsBounds = {.fields = {exact("lamps")}, .choice = {.margin = 4, .max_share = 2e-4}};
 
-// Where paths are used again (core/path_reuse.h): keeps a path's first vertex, once it has left it, if the surface is shaded by its
-// own normal, and not black: from a black one no path goes on.
+// Where paths are used again (core/path_reuse.h): of paths at diffuse surfaces, keeps the vertex if it is the first of that kind,
+// once they have left it, and the surface is shaded by its own normal, and not black: from a black one no path goes on.
 void keep_first(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kKeepFirstFields = {.reads = "slot o d n s beta", .writes = "kept"};
+constexpr KernelFields kKeepFirstFields = {.reads = "slot o d n s beta kept step", .writes = "kept"};
 
-// Of a path with such a first vertex its second one, if that is like it, and L. The path goes on with L = 0 and beta = its largest
+// Of paths whose bounce before was at such a vertex the second one, if that is like it, and L. The path goes on with L = 0 and beta = its largest
 // channel, which roulette then goes by: where several surfaces are coloured it ends fewer paths, without bias as ever.
 void keep_second(const Plan& plan, const PathState& s, Range range);
-constexpr KernelFields kKeepSecondFields = {.reads = "slot o d n s err beta L kept", .writes = "kept L beta"};
+constexpr KernelFields kKeepSecondFields = {.reads = "slot o d n s err beta L kept step", .writes = "kept L beta"};
 // All but y and gain to the bit.
 constexpr FieldBound kKeepSecondBound = ulps("kept", 2);
 

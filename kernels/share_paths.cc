@@ -34,8 +34,9 @@ HWY_INLINE Connection Connect(const KeptVertices& kept, size_t i, VI firsts) {
   const Vec3 m = LoadVec3(kept.m_x, kept.m_y, kept.m_z, i);
   const VF leaves = Dot(c.n, c.l), arrives = hn::Neg(Dot(m, c.l)), square = Dot(c.l, c.l);
   const VF zero = hn::Zero(d);
-  const MF shared =
-      hn::And(hn::Gt(hn::Load(d, kept.gain + i), zero), hn::And(hn::Gt(leaves, zero), hn::Gt(arrives, zero)));
+  const MF met = hn::Eq(hn::GatherIndex(d, kept.bounce, firsts), hn::Load(d, kept.bounce + i));
+  const MF shared = hn::And(hn::And(met, hn::Gt(hn::Load(d, kept.gain + i), zero)),
+                            hn::And(hn::Gt(leaves, zero), hn::Gt(arrives, zero)));
   c.density = hn::IfThenElseZero(shared, hn::Mul(hn::Div(leaves, square), hn::Div(arrives, square)));
   return c;
 }

@@ -31,6 +31,16 @@ std::string why_none(const Settings& settings, const Scene& scene = test::test_s
 
 RenderResult render_with(const Settings& settings) { return render(make_plan(test::test_scene(), settings)); }
 
+// Twice the variance of the picture's values, added up.
+double variance(const Scene& scene, Settings settings) {
+  const Image one = render(make_plan(scene, settings)).image;
+  ++settings.seed;
+  const Image other = render(make_plan(scene, settings)).image;
+  double sum = 0;
+  for (size_t i = 0; i < one.rgb.size(); ++i) sum += std::pow(double(one.rgb[i]) - other.rgb[i], 2);
+  return sum;
+}
+
 }  // namespace
 
 TEST_CASE("path reuse: every pixel is once in a square, the others of it are there, and none beyond the picture") {
@@ -145,23 +155,32 @@ TEST_CASE("path reuse: the same bits for any wave, threads and part of the pictu
 }
 
 TEST_CASE("path reuse: light between walls has half the variance or less, and what falls on them directly the same") {
-  const auto variance = [](const Settings& s) {
-    const Plan plan = make_plan(test::test_box(), s);
-    Settings again = s;
-    again.seed = 1;
-    const Image one = render(plan).image, other = render(make_plan(test::test_box(), again)).image;
-    double sum = 0;
-    for (size_t i = 0; i < one.rgb.size(); ++i) sum += std::pow(double(one.rgb[i]) - other.rgb[i], 2);
-    return sum;
-  };
+  const Scene scene = test::test_box();
   Settings on = small(), off = small();
   on.only_bounce = off.only_bounce = 2;
   on.light_paths = off.light_paths = false;
   off.reuse = false;
-  CHECK(variance(on) < 0.5 * variance(off));
+  CHECK(variance(scene, on) < 0.5 * variance(scene, off));
   // Nothing but the walls' own light is shared: of one bounce not a bit is another.
   on.only_bounce = off.only_bounce = 1;
-  CHECK(variance(on) == variance(off));
+  CHECK(variance(scene, on) == variance(scene, off));
+}
+
+TEST_CASE("path reuse: the same for what the camera sees in a mirror") {
+  Scene scene = test::test_box();
+  scene.spheres.clear();
+  // The large lamp turns its back to the ceiling, so that no wall sees a lamp in it, by chance.
+  std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.name == "small light"; });
+  for (Mesh& mesh : scene.meshes) {
+    if (mesh.name == "ceiling") mesh.material = test::kMirrorMaterial;
+  }
+  Settings on = small();
+  on.width *= 4, on.height *= 4;
+  on.crop = {36, 14, 20, 6};  // of the ceiling alone
+  on.only_bounce = 3, on.light_paths = false;
+  Settings off = on;
+  off.reuse = false;
+  CHECK(variance(scene, on) < 0.5 * variance(scene, off));
 }
 
 }  // namespace lanewise

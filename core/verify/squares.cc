@@ -90,6 +90,7 @@ std::array<KeptPath<float>, kPathsTogether> random_square(Rng& rng, bool grazes)
     LANEWISE_SET_VEC3(k, x, middle + apart * random_unit(rng));
     LANEWISE_SET_VEC3(k, n, rng() % 4 == 0 ? random_unit(rng) : normal);
     LANEWISE_SET_RGB(k, f, random_rgb(rng));
+    k.bounce = rng() % 8 == 0 ? 3 : 1;
     if (rng() % 8 == 0) continue;
     const Vec3<float> n = LANEWISE_VEC3(k, n);
     Vec3<float> to = random_unit(rng);
@@ -123,15 +124,22 @@ bool is_open(uint32_t second, uint32_t partner) { return (second * 7 + partner *
 double keep_first_error(uint32_t paths, uint32_t seed) {
   Rng rng(seed);
   KeptPaths all(paths);
-  const PathState& s = all.state();
-  for (uint32_t i = 0; i < all.paths(); ++i) store_path(s, i, random_vertex(rng, all.paths() - 1 - i));
+  PathState& s = all.state();
+  s.step.bounce = seed % kFirstBounces;
+  std::vector<KeptPath<double>> want(all.paths());
+  for (uint32_t i = 0; i < all.paths(); ++i) {
+    store_path(s, i, random_vertex(rng, all.paths() - 1 - i));
+    KeptPath<float> kept;
+    if (rng() % 4 == 0) kept.bounce = rng() % 2 ? -1.0f : 1.0f;  // has been at a diffuse surface before
+    store_kept(s.kept, s.slot[i], kept);
+    want[i] = load_kept<double>(s.kept, s.slot[i]);
+  }
   keep_first(Plan{}, s, all.all());
   double wrong = 0;
   for (uint32_t i = 0; i < all.paths(); ++i) {
-    KeptPath<double> want;
-    reference::keep_first(load_path<double>(s, i), want);
+    reference::keep_first(load_path<double>(s, i), want[i]);
     const KeptPath<double> got = load_kept<double>(s.kept, s.slot[i]);
-#define LANEWISE_COMPARE(name, meaning) wrong += got.name != want.name;
+#define LANEWISE_COMPARE(name, meaning) wrong += got.name != want[i].name;
     LANEWISE_KEPT_FIELDS(LANEWISE_COMPARE)
 #undef LANEWISE_COMPARE
   }
@@ -141,7 +149,8 @@ double keep_first_error(uint32_t paths, uint32_t seed) {
 double keep_second_error(uint32_t paths, uint32_t seed) {
   Rng rng(seed);
   KeptPaths all(paths);
-  const PathState& s = all.state();
+  PathState& s = all.state();
+  s.step.bounce = 1 + seed % kFirstBounces;
   std::vector<Path<double>> before;
   std::vector<KeptPath<double>> want(all.paths());
   for (uint32_t i = 0; i < all.paths(); ++i) {
@@ -150,7 +159,7 @@ double keep_second_error(uint32_t paths, uint32_t seed) {
     before.push_back(load_path<double>(s, i));
     if (rng() % 3 == 0) continue;  // no first vertex
     KeptPath<float> kept;
-    LANEWISE_SET_VEC3(kept, n, random_unit(rng));
+    kept.bounce = static_cast<float>(rng() % 4 == 0 ? s.step.bounce + 1 : s.step.bounce);
     store_kept(s.kept, p.slot, kept);
     want[i] = load_kept<double>(s.kept, p.slot);
   }

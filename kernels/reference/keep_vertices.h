@@ -32,7 +32,10 @@ bool is_flat(const Path<T>& p) {
 
 template <class T>
 void keep_first(const Path<T>& p, KeptPath<T>& kept) {
+  if (kept.bounce != 0) return;
+  kept.bounce = -1;
   if (!is_flat(p) || LANEWISE_RGB(p, beta) == Vec3<T>(0)) return;
+  kept.bounce = T(p.step.bounce + 1);
   LANEWISE_SET_VEC3(kept, x, LANEWISE_VEC3(p, o));
   LANEWISE_SET_VEC3(kept, n, normal_towards(p, LANEWISE_VEC3(p, d)));
   LANEWISE_SET_RGB(kept, f, LANEWISE_RGB(p, beta));
@@ -42,7 +45,7 @@ template <class T>
 void keep_second(Path<T>& p, KeptPath<T>& kept) {
   const Vec3<T> beta = LANEWISE_RGB(p, beta);
   const T most = std::max({beta.x, beta.y, beta.z});
-  if (!is_flat(p) || !(most > T(kLeastShared)) || LANEWISE_VEC3(kept, n) == Vec3<T>(0)) return;
+  if (kept.bounce != T(p.step.bounce) || !is_flat(p) || !(most > T(kLeastShared))) return;
   const Vec3<T> n = normal_towards(p, -LANEWISE_VEC3(p, d));
   LANEWISE_SET_VEC3(kept, y, LANEWISE_VEC3(p, o) + p.err * n);
   LANEWISE_SET_VEC3(kept, m, n);

@@ -18,7 +18,9 @@ T connect_paths(const KeptPath<T>& first, const KeptPath<T>& second, Vec3<T>& l)
   l = LANEWISE_VEC3(second, y) - LANEWISE_VEC3(first, x);
   const T leaves = glm::dot(LANEWISE_VEC3(first, n), l), arrives = -glm::dot(LANEWISE_VEC3(second, m), l);
   const T square = glm::dot(l, l);
-  return second.gain > 0 && leaves > 0 && arrives > 0 ? (leaves / square) * (arrives / square) : T(0);
+  return first.bounce == second.bounce && second.gain > 0 && leaves > 0 && arrives > 0
+             ? (leaves / square) * (arrives / square)
+             : T(0);
 }
 
 // results: what each path has retired with; becomes what its pixel gets. sees(i, j, l): whether nothing is in the way from the

@@ -62,6 +62,25 @@ TEST_CASE(
   CHECK_MESSAGE(means.holds(), means.least_likely());
 }
 
+TEST_CASE("path reuse: as bright in what the camera sees by way of mirrors, glass and metal, at every depth") {
+  test::Family means;
+  for (const uint32_t material : {test::kMirrorMaterial, test::kGlassMaterial, test::kGold}) {
+    Scene scene = test::test_scene();
+    for (Mesh& mesh : scene.meshes) {
+      if (mesh.name == "back" || mesh.name == "right") mesh.material = material;
+    }
+    for (const bool light_paths : {false, true}) {
+      for (const uint32_t depth : {3u, 5u, 9u}) {
+        Settings settings = settings_of(depth);
+        settings.light_paths = light_paths;
+        const std::string name = "material " + std::to_string(material) + ", -m " + std::to_string(depth);
+        check(means, name + (light_paths ? ", light paths" : ""), scene, settings);
+      }
+    }
+  }
+  CHECK_MESSAGE(means.holds(), means.least_likely());
+}
+
 TEST_CASE("path reuse: as bright by a lens, under a sky, of one bounce alone, and by other estimators") {
   test::Family means;
   Settings lens = settings_of(4);
