@@ -10,11 +10,11 @@
 //   sum over j of  f_i L_j w_ij,    w_ij = p_i(y_j) V(x_i, y_j) / sum over k of p_k(y_j) V(x_k, y_j)
 //
 // where p_i is the density, by area, with which x_i chooses y_j (a cosine lobe), V whether they see each other, and f_i the
-// throughput of x_i: f cos / p, its albedo. So each L_j is shared out with weights that add up to 1. Every pixel's estimate stays
+// throughput of the path behind x_i. So each L_j is shared out with weights that add up to 1. Every pixel's estimate stays
 // unbiased by itself; those of a square hang together. It costs a shadow ray for every other pixel of the square.
 //
-// Shared are vertices without shading normals of their own, and radiance that is a finite number. What falls on x directly, and what comes from mirrors, glass, metal
-// and emitters, stays with its path.
+// Shared are vertices without shading normals of their own, and radiance that is a finite number. What falls on x directly, and
+// what comes to it from mirrors, glass, metal and emitters, stays with its path.
 #pragma once
 
 #include <cstdint>

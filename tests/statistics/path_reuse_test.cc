@@ -81,6 +81,22 @@ TEST_CASE("path reuse: as bright in what the camera sees by way of mirrors, glas
   CHECK_MESSAGE(means.holds(), means.least_likely());
 }
 
+TEST_CASE("path reuse: as bright where paths come to diffuse surfaces late, when roulette has begun") {
+  test::Family means;
+  Scene scene = test::test_box();
+  scene.materials[test::kGlassMaterial].ior = 1.01;
+  scene.materials[test::kGlassMaterial].transmittance = glm::dvec3(0.7);
+  scene.spheres.clear();
+  for (uint32_t panes = 1; panes <= kFirstBounces + 2; ++panes) {  // around the camera
+    scene.spheres.push_back(
+        {"pane", glm::dvec3(scene.cameras[0].to_world[3]), 0.2 + 0.1 * panes, test::kGlassMaterial});
+    Settings settings = settings_of(panes + 2);
+    settings.only_bounce = panes + 2;
+    check(means, std::to_string(panes) + " panes", scene, settings);
+  }
+  CHECK_MESSAGE(means.holds(), means.least_likely());
+}
+
 TEST_CASE("path reuse: as bright by a lens, under a sky, of one bounce alone, and by other estimators") {
   test::Family means;
   Settings lens = settings_of(4);
