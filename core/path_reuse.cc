@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/plan_light_paths.h"
+
 namespace lanewise {
 namespace {
 
@@ -28,9 +30,7 @@ const char* why_no_reuse(const Plan& plan) {
 
 uint32_t first_bounces(const Plan& plan) {
   if (!reuses_paths(plan)) return 0;
-  const auto leads_on = [](uint32_t bin) { return bin != kDiffuse && bin < kSurfaceBins; };
-  const bool others = std::ranges::any_of(plan.prim_bin, leads_on);
-  return others ? std::min(plan.settings.max_depth - 1, kFirstBounces) : 1;
+  return std::ranges::any_of(plan.prim_bin, casts) ? std::min(plan.settings.max_depth - 1, kFirstBounces) : 1;
 }
 
 PixelSquares squares_of(const std::vector<uint32_t>& pixels, const uint32_t* slots, uint32_t width, uint32_t height) {

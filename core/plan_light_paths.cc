@@ -32,8 +32,6 @@ uint64_t paths_of_pass(const Plan& plan) {
 
 dvec3 to_dvec3(const float* v) { return {v[0], v[1], v[2]}; }
 
-bool casts(uint32_t bin) { return bin > kDiffuse && bin < kSurfaceBins; }
-
 // The box of some points, and a sphere about its centre.
 class Hull {
  public:

@@ -31,6 +31,9 @@ constexpr uint32_t kPixelsPerLightPath = 4;
 // this as a factor. So a vertex of a light path has a factor of 4 at most to make up for.
 constexpr float kLeastAgreement = 0.5f;
 
+// Surfaces that scatter and are not diffuse: light comes to others by way of them.
+inline bool casts(uint32_t bin) { return bin > kDiffuse && bin < kSurfaceBins; }
+
 // More surfaces than this have one sphere around them all.
 constexpr uint32_t kMaxCasters = 16;
 
